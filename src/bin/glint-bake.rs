@@ -1,0 +1,2 @@
+//! placeholder, replaced with the command line.
+fn main() {}

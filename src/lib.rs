@@ -1,0 +1,1 @@
+//! What the three programs share: flags, files, progress, reports.
