@@ -1,1 +1,3 @@
 //! What the three programs share: flags, files, progress, reports.
+
+pub mod input;

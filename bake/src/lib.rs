@@ -2,4 +2,8 @@
 
 pub mod error;
 pub mod footprint;
+pub mod ndf_maps;
 pub mod normal_map;
+pub mod progress;
+pub mod quality;
+pub mod rng;

@@ -1,4 +1,33 @@
-//! placeholder
-/// Four bytes that name a section kind.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
-pub struct FourCc(pub [u8; 4]);
+//! The container: a header, a table of sections, and aligned payloads. Knows nothing of what the payloads mean.
+
+mod atomic;
+mod builder;
+mod entry;
+mod four_cc;
+mod header;
+mod index;
+mod layout;
+mod limits;
+mod mmap;
+mod pack;
+mod payload;
+mod resource;
+mod section;
+mod structure;
+
+pub use atomic::{WriteOutcome, write_atomic};
+pub use builder::PackBuilder;
+pub use entry::{ENTRY_BYTES, SectionEntry};
+pub use four_cc::FourCc;
+pub use header::{HEADER_BYTES, MAGIC, VERSION};
+pub use layout::PAYLOAD_ALIGNMENT;
+pub use limits::Limits;
+pub use pack::Pack;
+pub use resource::{Resource, full_mip_count};
+pub use section::{Codec, MAX_NAME_BYTES, Section};
+
+pub(crate) use index::Index;
+pub(crate) use structure::Structure;
+
+/// Payload of one section of `bytes`; see [`Pack::payload`].
+pub(crate) use payload::read as read_payload;

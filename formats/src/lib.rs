@@ -1,4 +1,29 @@
 //! What a glintpack is: container, typed sections, validation. No maths, no command line, no GPU.
+//!
+//! Write with [`PackBuilder`] and [`write_atomic`]; read with [`Pack`]; check bytes of any origin with [`validate`].
+//! The bytes are described in `docs/FORMAT.md`.
+#![deny(unsafe_code)]
+
+// Buffers hold little-endian records that are read in place.
+#[cfg(target_endian = "big")]
+compile_error!("glint-formats reads little-endian records in place and is not written for big-endian machines");
 
 pub mod container;
+mod error;
+mod issue;
+pub mod kinds;
 pub mod ndf_maps;
+mod ndf_maps_check;
+pub mod params;
+mod placement_check;
+pub mod provenance;
+mod sections;
+mod verify;
+pub mod vk_format;
+
+pub use container::{
+    Codec, FourCc, Limits, Pack, PackBuilder, Resource, Section, SectionEntry, WriteOutcome, write_atomic,
+};
+pub use error::{FormatError, OpenError};
+pub use issue::{Issue, IssueCode, Severity};
+pub use verify::validate;

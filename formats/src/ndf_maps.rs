@@ -107,15 +107,16 @@ pub struct NdfMapsParams {
 
 /// One tile: where its box lies in the projected-normal disk and where its texels are.
 ///
-/// The density at s is scale · Σ v(i, j) · tent(p_x − i) · tent(p_y − j) with p = (s − origin) · inv_spacing;
-/// texels outside 0 ≤ i < width, 0 ≤ j < height are zero. Texel v(i, j) is element texel_offset + j · width + i.
+/// The density at s is scale · Σ v(i, j) · B(p_x − i) · B(p_y − j) with p = (s − origin) · inv_spacing. B is the quadratic
+/// B-spline (¾ − t² for |t| ≤ ½, ½ (3/2 − |t|)² for |t| ≤ 3/2, else 0), so nine texels reach a point; for
+/// [`DensityStorage::PaperF32`] it is the tent 1 − |t| of bilinear filtering. Densities below 0 do not occur; texels outside 0 ≤ i < width, 0 ≤ j < height are zero. Texel v(i, j) is element texel_offset + j · width + i.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct TileRecord {
     /// Projected normal at texel (0, 0).
     pub origin: [f32; 2],
-    /// 1 / distance of neighbouring texels.
-    pub inv_spacing: f32,
+    /// 1 / distance of neighbouring texels along s_x and s_y.
+    pub inv_spacing: [f32; 2],
     /// Density that a stored 1.0 stands for.
     pub scale: f32,
     /// First texel, in texels from the start of the density section.
@@ -124,8 +125,6 @@ pub struct TileRecord {
     pub size: u32,
     /// E₁ of this tile as the bake measured it.
     pub error: f32,
-    /// Zero.
-    pub reserved: u32,
 }
 
 impl TileRecord {

@@ -1,0 +1,162 @@
+//! From an example to its multi-scale NDF maps: a pyramid of tiles, each with a box and a resolution of its own.
+//!
+//! Xing et al. 2024, section 5.2: level l divides the example in tiles of 2^(l+1) texels, down to one tile. Examples of
+//! any size are allowed; tiles at the right and lower edge are cut.
+
+use super::disk::LobeNorm;
+use super::micro_normals::TexelRect;
+use super::tile_fit::{self, FitSettings, FittedTile};
+use crate::error::{BakeError, Result};
+use crate::normal_map::NormalMap;
+use crate::progress::Progress;
+use crate::quality::metrics::Summary;
+use glint_formats::ndf_maps::{DensityStorage, Level, MeasuredError, NdfMapsParams, TileRecord};
+use rayon::prelude::*;
+
+/// Texels of an example at most; larger maps belong to other methods, or are cropped.
+pub const MAX_EXAMPLE_TEXELS: u64 = 128 * 128;
+/// Smallest and largest intrinsic roughness σ_r.
+pub const ROUGHNESS_RANGE: (f64, f64) = (1e-4, 1.0);
+
+/// Options of one example's bake.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NdfMapsOptions {
+    /// Intrinsic roughness σ_r, a standard deviation in the projected-normal disk.
+    pub roughness: f64,
+    /// E₁ asked of every tile (ignored by the paper's storage).
+    pub max_error: f64,
+    /// How densities are stored.
+    pub storage: DensityStorage,
+}
+
+impl Default for NdfMapsOptions {
+    fn default() -> NdfMapsOptions {
+        NdfMapsOptions { roughness: 0.02, max_error: 0.01, storage: DensityStorage::SqrtU8 }
+    }
+}
+
+/// One example's NDF maps, ready for a pack.
+#[derive(Clone, Debug)]
+pub struct BakedNdfMaps {
+    /// Parameters.
+    pub params: NdfMapsParams,
+    /// One record a tile.
+    pub tiles: Vec<TileRecord>,
+    /// Encoded density texels of all tiles.
+    pub density: Vec<u8>,
+    /// Projected normals of the example, snorm16, row-major.
+    pub normals: Vec<[i16; 2]>,
+}
+
+impl BakedNdfMaps {
+    /// Bytes that a renderer keeps: tile records, densities and normals.
+    pub fn gpu_bytes(&self) -> usize {
+        self.tiles.len() * size_of::<TileRecord>() + self.density.len() + self.normals.len() * 4
+    }
+}
+
+/// Bakes one example. Errors: an option out of range, or an example that is too large.
+pub fn bake(map: &NormalMap, options: &NdfMapsOptions, progress: &dyn Progress) -> Result<BakedNdfMaps> {
+    check(map, options)?;
+    let levels = levels_of(map.width, map.height);
+    let rects: Vec<TexelRect> = levels.iter().flat_map(|level| tile_rects(map, level)).collect();
+    let settings = FitSettings {
+        roughness: options.roughness,
+        max_error: options.max_error,
+        storage: options.storage,
+        norm: LobeNorm::new(options.roughness),
+    };
+    progress.begin("NDF maps", rects.len() as u64);
+    let fitted: Vec<FittedTile> = rects
+        .par_iter()
+        .map(|rect| {
+            let tile = tile_fit::fit_tile(map, *rect, &settings);
+            progress.advance(1);
+            tile
+        })
+        .collect();
+    progress.end();
+
+    let texel_bytes = options.storage.texel_bytes() as usize;
+    let mut tiles = Vec::with_capacity(fitted.len());
+    let mut density = Vec::new();
+    for tile in &fitted {
+        tiles.push(TileRecord {
+            origin: tile.origin.map(|v| v as f32),
+            inv_spacing: tile.spacing.map(|v| (1.0 / v) as f32),
+            scale: tile.scale,
+            texel_offset: (density.len() / texel_bytes) as u32,
+            size: tile.width as u32 | (tile.height as u32) << 16,
+            error: tile.error as f32,
+        });
+        density.extend_from_slice(&tile.bytes);
+    }
+    let errors = Summary::of(fitted.iter().map(|t| t.error).collect());
+    let energy = fitted.iter().fold(0.0f64, |a, t| a.max(t.energy));
+    let snorm = |v: f32| (v.clamp(-1.0, 1.0) * 32767.0).round() as i16;
+    Ok(BakedNdfMaps {
+        params: NdfMapsParams {
+            width: map.width,
+            height: map.height,
+            wrap: map.wrap,
+            intrinsic_roughness: options.roughness as f32,
+            storage: options.storage,
+            levels,
+            max_error: options.max_error as f32,
+            measured: MeasuredError { mean: errors.mean, p95: errors.p95, worst: errors.worst, energy },
+        },
+        tiles,
+        density,
+        normals: map.projected.iter().map(|s| s.map(snorm)).collect(),
+    })
+}
+
+fn check(map: &NormalMap, options: &NdfMapsOptions) -> Result<()> {
+    let (lo, hi) = ROUGHNESS_RANGE;
+    if !(lo..=hi).contains(&options.roughness) {
+        return Err(BakeError::BadOption(format!(
+            "intrinsic roughness {} is outside {lo} … {hi}",
+            options.roughness
+        )));
+    }
+    if options.max_error.is_nan() || options.max_error <= 0.0 {
+        return Err(BakeError::BadOption(format!("maximum error {} is not above 0", options.max_error)));
+    }
+    let texels = map.width as u64 * map.height as u64;
+    if texels > MAX_EXAMPLE_TEXELS {
+        return Err(BakeError::LimitExceeded(format!(
+            "an example of {} × {} has {texels} texels, more than the {MAX_EXAMPLE_TEXELS} that NDF maps are meant for; \
+             bake a part of it with --crop WxH+X+Y",
+            map.width, map.height
+        )));
+    }
+    Ok(())
+}
+
+/// Levels of a `width` × `height` example: tiles of 2, 4, 8, … texels, up to the one tile that covers it.
+pub fn levels_of(width: u32, height: u32) -> Vec<Level> {
+    let mut levels = Vec::new();
+    let (mut tile_texels, mut first_tile) = (2, 0);
+    loop {
+        let (tiles_x, tiles_y) = (width.div_ceil(tile_texels), height.div_ceil(tile_texels));
+        levels.push(Level { tile_texels, tiles_x, tiles_y, first_tile });
+        if tiles_x * tiles_y == 1 {
+            return levels;
+        }
+        first_tile += tiles_x * tiles_y;
+        tile_texels *= 2;
+    }
+}
+
+/// The texels of each tile of a level, row by row.
+pub fn tile_rects(map: &NormalMap, level: &Level) -> Vec<TexelRect> {
+    let mut rects = Vec::new();
+    for y in 0..level.tiles_y {
+        for x in 0..level.tiles_x {
+            let min = [x * level.tile_texels, y * level.tile_texels];
+            let max = [(min[0] + level.tile_texels).min(map.width), (min[1] + level.tile_texels).min(map.height)];
+            rects.push(TexelRect { min, max });
+        }
+    }
+    rects
+}

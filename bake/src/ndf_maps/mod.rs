@@ -1,0 +1,13 @@
+//! Multi-scale NDF maps of tiny examples (Xing et al. 2024).
+
+pub mod bake;
+mod disk;
+pub mod eval;
+pub mod micro_normals;
+pub mod placement;
+pub mod reference;
+pub mod reference_surface;
+pub mod sections;
+pub mod surface;
+mod tile_fit;
+pub mod transform;

@@ -1,0 +1,222 @@
+//! The NDF by its definition, in f64: an integral over micro-normals of one lobe each. Slow, and shares nothing with
+//! the bake but the normal map.
+//!
+//! D(s) = ∫ w(u) K(s; n(u)) du, with n(u) the bilinear normal, w the footprint (or a tile's box), and K the Gaussian of
+//! standard deviation σ_r around n, divided by its mass inside the unit disk (Xing et al. 2024, Eq. 1 and 2, with the
+//! continuous map in place of one lobe a texel).
+
+use super::micro_normals::TexelRect;
+use crate::normal_map::NormalMap;
+use crate::quality::metrics::DiskGrid;
+use glam::{DMat2, DVec2};
+
+/// A lobe of the reference: everything a small piece of surface reflects.
+#[derive(Clone, Copy, Debug)]
+pub struct MicroNormal {
+    /// Mean in the surface's disk.
+    pub mean: DVec2,
+    /// Share of the footprint over the lobe's mass inside the disk.
+    pub weight: f64,
+    /// Which of the reference's kernels the lobe has.
+    pub kernel: usize,
+}
+
+/// Inverse covariance (xx, xy, yy), peak and reach (standard deviation of its longest axis) of a lobe.
+#[derive(Clone, Copy, Debug)]
+struct Kernel {
+    inverse: [f64; 3],
+    peak: f64,
+    sigma: f64,
+}
+
+/// An NDF as a list of micro-normals.
+#[derive(Clone, Debug)]
+pub struct ReferenceNdf {
+    kernels: Vec<Kernel>,
+    micro_normals: Vec<MicroNormal>,
+}
+
+/// Lobes are cut at this many standard deviations (4e-6 of their mass).
+const CUT: f64 = 5.0;
+
+impl ReferenceNdf {
+    /// NDF of `micro_normals` whose lobes have one of `covariances`.
+    pub fn new(covariances: &[DMat2], micro_normals: Vec<MicroNormal>) -> ReferenceNdf {
+        let kernels = covariances
+            .iter()
+            .map(|c| {
+                let det = c.determinant();
+                let trace = c.x_axis.x + c.y_axis.y;
+                let largest = 0.5 * (trace + (trace * trace - 4.0 * det).max(0.0).sqrt());
+                Kernel {
+                    inverse: [c.y_axis.y / det, -c.x_axis.y / det, c.x_axis.x / det],
+                    peak: 1.0 / (2.0 * std::f64::consts::PI * det.sqrt()),
+                    sigma: largest.sqrt(),
+                }
+            })
+            .collect();
+        ReferenceNdf { kernels, micro_normals }
+    }
+
+    /// NDF of a rectangle of the example, every point alike: Gauss–Legendre on pieces of half a texel at most, small
+    /// enough that the normal moves by no more than 1.5 σ_r across one.
+    pub fn of_rect(map: &NormalMap, rect: TexelRect, roughness: f64) -> ReferenceNdf {
+        // Nodes and weights of the 4-point rule on [0, 1].
+        const NODES: [(f64, f64); 4] = [
+            (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+            (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+            (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+            (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+        ];
+        let mass = DiskMass::new(roughness);
+        let mut micro_normals = Vec::new();
+        let area = rect.area() as f64;
+        for y in 2 * rect.min[1]..2 * rect.max[1] {
+            for x in 2 * rect.min[0]..2 * rect.max[0] {
+                let low = DVec2::new(x as f64, y as f64) * 0.5;
+                let (_, jacobian) = map.bilinear(low + 0.25);
+                let corners = [(0.01, 0.01), (0.49, 0.01), (0.01, 0.49), (0.49, 0.49)];
+                let slope = |axis: usize| {
+                    let at = |c: (f64, f64)| map.bilinear(low + DVec2::new(c.0, c.1)).1.col(axis).length();
+                    corners.into_iter().map(at).fold(jacobian.col(axis).length(), f64::max)
+                };
+                let pieces = |axis: usize| (0.5 * slope(axis) / (1.5 * roughness)).ceil().clamp(1.0, 400.0) as u32;
+                let (nu, nv) = (pieces(0), pieces(1));
+                for j in 0..nv {
+                    for i in 0..nu {
+                        for (fy, wy) in NODES {
+                            for (fx, wx) in NODES {
+                                let f = DVec2::new((i as f64 + fx) / nu as f64, (j as f64 + fy) / nv as f64);
+                                let s = map.bilinear(low + 0.5 * f).0;
+                                let weight = 0.25 * wx * wy / (nu as f64 * nv as f64 * area);
+                                micro_normals.push(MicroNormal {
+                                    mean: s,
+                                    weight: weight / mass.inside(s.length()),
+                                    kernel: 0,
+                                });
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        ReferenceNdf::new(&[DMat2::IDENTITY * (roughness * roughness)], micro_normals)
+    }
+
+    /// The density at `s`: the sum over all lobes, uncut.
+    pub fn density(&self, s: DVec2) -> f64 {
+        if s.length_squared() > 1.0 {
+            return 0.0;
+        }
+        let mut sum = 0.0;
+        for m in &self.micro_normals {
+            let k = &self.kernels[m.kernel];
+            let d = s - m.mean;
+            let q = k.inverse[0] * d.x * d.x + 2.0 * k.inverse[1] * d.x * d.y + k.inverse[2] * d.y * d.y;
+            sum += m.weight * k.peak * libm::exp(-0.5 * q);
+        }
+        sum
+    }
+
+    /// The densities at the points of a grid, each lobe added where it reaches.
+    pub fn on_grid(&self, grid: &DiskGrid) -> Vec<f64> {
+        let mut values = vec![0.0; grid.width * grid.height];
+        let mut along = Vec::new();
+        for m in &self.micro_normals {
+            let k = &self.kernels[m.kernel];
+            let reach = CUT * k.sigma;
+            let range = |centre: f64, origin: f64, count: usize| {
+                let first = ((centre - reach - origin) / grid.spacing).ceil().max(0.0) as usize;
+                let last = ((centre + reach - origin) / grid.spacing).floor();
+                first..((last + 1.0).max(0.0) as usize).min(count)
+            };
+            let columns = range(m.mean.x, grid.origin.x, grid.width);
+            along.clear();
+            along.extend(columns.clone().map(|i| {
+                let dx = grid.point(i, 0).x - m.mean.x;
+                (dx, libm::exp(-0.5 * k.inverse[0] * dx * dx))
+            }));
+            for j in range(m.mean.y, grid.origin.y, grid.height) {
+                let dy = grid.point(0, j).y - m.mean.y;
+                let row = m.weight * k.peak * libm::exp(-0.5 * k.inverse[2] * dy * dy);
+                let target = &mut values[j * grid.width + columns.start.min(grid.width)..];
+                for (value, (dx, ex)) in target.iter_mut().zip(&along) {
+                    let cross = if k.inverse[1] == 0.0 { 1.0 } else { libm::exp(-k.inverse[1] * dx * dy) };
+                    *value += row * ex * cross;
+                }
+            }
+        }
+        for j in 0..grid.height {
+            for i in 0..grid.width {
+                if grid.point(i, j).length_squared() > 1.0 {
+                    values[j * grid.width + i] = 0.0;
+                }
+            }
+        }
+        values
+    }
+
+    /// A grid that holds all of the NDF, `per_sigma` points a standard deviation of the narrowest lobe.
+    pub fn grid(&self, per_sigma: f64) -> DiskGrid {
+        let mut lo = DVec2::splat(f64::INFINITY);
+        let mut hi = DVec2::splat(f64::NEG_INFINITY);
+        for m in &self.micro_normals {
+            let reach = DVec2::splat(CUT * self.kernels[m.kernel].sigma);
+            lo = lo.min(m.mean - reach);
+            hi = hi.max(m.mean + reach);
+        }
+        let narrowest = self.kernels.iter().map(|k| k.sigma).fold(f64::INFINITY, f64::min);
+        DiskGrid::over(lo, hi, narrowest / per_sigma)
+    }
+}
+
+/// Mass inside the unit disk of a Gaussian of standard deviation σ, by brute force on a grid of points, tabulated over
+/// the distance of its centre from the disk's.
+pub struct DiskMass {
+    sigma: f64,
+    table: Vec<f64>,
+}
+
+impl DiskMass {
+    const STEPS: usize = 64;
+    const REACH: f64 = 6.0;
+
+    /// Mass of lobes of standard deviation `sigma`.
+    pub fn new(sigma: f64) -> DiskMass {
+        let table = (0..=Self::STEPS).map(|k| Self::sum(Self::radius(sigma, k), sigma)).collect();
+        DiskMass { sigma, table }
+    }
+
+    fn radius(sigma: f64, k: usize) -> f64 {
+        let first = (1.0 - Self::REACH * sigma).max(0.0);
+        first + (1.0 - first) * k as f64 / Self::STEPS as f64
+    }
+
+    fn sum(radius: f64, sigma: f64) -> f64 {
+        const N: usize = 600;
+        let h = 2.0 * Self::REACH * sigma / N as f64;
+        let mut total = 0.0;
+        for j in 0..N {
+            let y = -Self::REACH * sigma + h * (j as f64 + 0.5);
+            for i in 0..N {
+                let dx = -Self::REACH * sigma + h * (i as f64 + 0.5);
+                if (radius + dx).hypot(y) <= 1.0 {
+                    total += libm::exp(-0.5 * (dx * dx + y * y) / (sigma * sigma));
+                }
+            }
+        }
+        total * h * h / (2.0 * std::f64::consts::PI * sigma * sigma)
+    }
+
+    /// Mass inside for a lobe at `radius` from the centre.
+    pub fn inside(&self, radius: f64) -> f64 {
+        let first = Self::radius(self.sigma, 0);
+        if first > 0.0 && radius <= first {
+            return 1.0;
+        }
+        let p = ((radius.min(1.0) - first) / (1.0 - first) * Self::STEPS as f64).max(0.0);
+        let k = (p as usize).min(Self::STEPS - 1);
+        let f = p - k as f64;
+        self.table[k] * (1.0 - f) + self.table[k + 1] * f
+    }
+}

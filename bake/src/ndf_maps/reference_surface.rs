@@ -1,0 +1,173 @@
+//! The NDF of a footprint on a surface covered with examples, by its definition: the normal map that the placement
+//! describes, point by point, under the Gaussian footprint.
+//!
+//! Owners are found anew from the centres (nearest centre to each sub-region's, among the cells around), and local
+//! positions from the transforms. A sub-texel lattice holds the example's normals, as an explicit map of higher
+//! resolution would; footprints under two texels are integrated without it.
+
+use super::eval::Material;
+use super::reference::{DiskMass, MicroNormal, ReferenceNdf};
+use crate::footprint::Footprint;
+use crate::normal_map::NormalMap;
+use glam::{DMat2, DVec2};
+use glint_formats::ndf_maps::PlacementKind;
+
+/// Footprints reach this far, in standard deviations (4e-5 of their mass is farther out).
+const REACH: f64 = 4.5;
+
+/// A surface: the example as it was before the bake, and the placement of a material.
+pub struct SurfaceReference<'a> {
+    map: &'a NormalMap,
+    material: &'a Material,
+    roughness: f64,
+    mass: DiskMass,
+    /// Largest length of ∂s/∂u on the example, per texel.
+    steepest: f64,
+}
+
+/// What shows at a point of the surface: palette entry and position in the example, in texels within its bounds.
+type Shown = (usize, DVec2);
+
+impl<'a> SurfaceReference<'a> {
+    /// Reference for `material`, baked from `map` with `roughness`.
+    pub fn new(map: &'a NormalMap, material: &'a Material, roughness: f64) -> SurfaceReference<'a> {
+        let mut steepest = 0.0f64;
+        for j in 0..map.height as i64 {
+            for i in 0..map.width as i64 {
+                let s = map.texel(i, j);
+                steepest = steepest.max(s.distance(map.texel(i + 1, j))).max(s.distance(map.texel(i, j + 1)));
+            }
+        }
+        SurfaceReference { map, material, roughness, mass: DiskMass::new(roughness), steepest }
+    }
+
+    /// Palette entry and example position that show at the surface point `u`.
+    pub fn shown_at(&self, u: DVec2) -> Shown {
+        let size = DVec2::new(self.map.width as f64, self.map.height as f64);
+        let within = |x: DVec2| x - (x / size).floor() * size;
+        match self.material.placement.params.kind {
+            PlacementKind::Tiled => (0, within(self.to_local(0) * u)),
+            PlacementKind::Stochastic { cells_x, cells_y, cell_texels, .. } => {
+                let edge = cell_texels as f64;
+                let region = ((u / (0.5 * edge)).floor() + 0.5) * (0.5 * edge);
+                let home = (region / edge).floor();
+                let mut best = (f64::INFINITY, 0, DVec2::ZERO);
+                for dy in -2..=2 {
+                    for dx in -2..=2 {
+                        let cell = home + DVec2::new(dx as f64, dy as f64);
+                        let x = (cell.x as i64).rem_euclid(cells_x as i64);
+                        let y = (cell.y as i64).rem_euclid(cells_y as i64);
+                        let at = (y * cells_x as i64 + x) as usize;
+                        let packed = self.material.placement.noise[at].centre;
+                        let centre = (cell + unorm_pair(packed)) * edge;
+                        let distance = centre.distance(region);
+                        if distance < best.0 {
+                            best = (distance, at, centre);
+                        }
+                    }
+                }
+                let owner = self.material.placement.noise[best.1];
+                let class = (owner.class_and_owners & 0xff) as usize;
+                (class, within(self.to_local(class) * (u - best.2) + unorm_pair(owner.offset) * size))
+            }
+        }
+    }
+
+    /// The NDF of a footprint.
+    pub fn ndf(&self, footprint: &Footprint) -> ReferenceNdf {
+        let (minor, major, axis) = footprint.principal();
+        let covariances: Vec<DMat2> = (0..self.material.placement.palette.len())
+            .map(|class| {
+                let m = self.to_surface_normal(class);
+                m * m.transpose() * (self.roughness * self.roughness)
+            })
+            .collect();
+        let micro_normals = if minor < 2.0 {
+            let fine = 0.4 * self.roughness / self.steepest.max(1e-9);
+            let pitch = |sigma: f64| (sigma / 8.0).min(fine).max(sigma / 400.0).max(1e-12);
+            let mut list = Vec::new();
+            self.for_each_point(footprint, axis, [major, minor], [pitch(major), pitch(minor)], |u, weight| {
+                let (class, local) = self.shown_at(u);
+                list.push(self.micro_normal(class, self.map.bilinear(local).0, weight));
+            });
+            list
+        } else {
+            self.binned(footprint, axis, [major, minor])
+        };
+        ReferenceNdf::new(&covariances, micro_normals)
+    }
+
+    /// Micro-normals of a larger footprint: shares of the cells of a sub-texel lattice under each palette entry.
+    fn binned(&self, footprint: &Footprint, axis: DVec2, sigmas: [f64; 2]) -> Vec<MicroNormal> {
+        let per_texel = (2.0 * self.steepest / self.roughness).ceil().clamp(4.0, 16.0);
+        let (w, h) = (self.map.width as usize * per_texel as usize, self.map.height as usize * per_texel as usize);
+        let mut shares = vec![0.0; w * h * self.material.placement.palette.len()];
+        let pitch = sigmas.map(|sigma| (1.0 / per_texel).max(sigma / 160.0));
+        self.for_each_point(footprint, axis, sigmas, pitch, |u, weight| {
+            let (class, local) = self.shown_at(u);
+            let (i, j) = ((local.x * per_texel) as usize, (local.y * per_texel) as usize);
+            shares[(class * h + j.min(h - 1)) * w + i.min(w - 1)] += weight;
+        });
+        let mut list = Vec::new();
+        for (at, share) in shares.into_iter().enumerate() {
+            if share > 0.0 {
+                let local = DVec2::new((at % w) as f64 + 0.5, (at / w % h) as f64 + 0.5) / per_texel;
+                list.push(self.micro_normal(at / (w * h), self.map.bilinear(local).0, share));
+            }
+        }
+        list
+    }
+
+    /// Calls `visit(u, share)` for points of a lattice along the footprint's axes; shares sum to 1.
+    fn for_each_point(
+        &self,
+        footprint: &Footprint,
+        axis: DVec2,
+        sigmas: [f64; 2],
+        pitch: [f64; 2],
+        mut visit: impl FnMut(DVec2, f64),
+    ) {
+        let line = |sigma: f64, pitch: f64| {
+            let half = (REACH * sigma / pitch).ceil() as i64;
+            let points: Vec<(f64, f64)> = (-half..=half)
+                .map(|k| {
+                    let x = k as f64 * pitch;
+                    (x, if sigma > 0.0 { libm::exp(-0.5 * (x / sigma).powi(2)) } else { 1.0 })
+                })
+                .collect();
+            let total: f64 = points.iter().map(|p| p.1).sum();
+            points.into_iter().map(move |(x, w)| (x, w / total))
+        };
+        let across: Vec<(f64, f64)> = line(sigmas[1], pitch[1]).collect();
+        for (x, wx) in line(sigmas[0], pitch[0]) {
+            for (y, wy) in &across {
+                visit(footprint.mean + axis * x + axis.perp() * *y, wx * wy);
+            }
+        }
+    }
+
+    fn micro_normal(&self, class: usize, local: DVec2, share: f64) -> MicroNormal {
+        MicroNormal {
+            mean: self.to_surface_normal(class) * local,
+            weight: share / self.mass.inside(local.length()),
+            kernel: class,
+        }
+    }
+
+    fn to_local(&self, class: usize) -> DMat2 {
+        rows(self.material.placement.palette[class].position_to_local)
+    }
+
+    fn to_surface_normal(&self, class: usize) -> DMat2 {
+        rows(self.material.placement.palette[class].normal_to_local).inverse()
+    }
+}
+
+fn rows(m: [f32; 4]) -> DMat2 {
+    let [a, b, c, d] = m.map(f64::from);
+    DMat2::from_cols(DVec2::new(a, c), DVec2::new(b, d))
+}
+
+fn unorm_pair(packed: u32) -> DVec2 {
+    DVec2::new((packed & 0xffff) as f64, (packed >> 16) as f64) / 65535.0
+}

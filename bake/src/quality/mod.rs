@@ -1,0 +1,3 @@
+//! How error is measured, the same way for every method.
+
+pub mod metrics;

@@ -1,0 +1,60 @@
+//! The section kinds this version knows, and the checks of their contents. A new method adds its rows here.
+
+use crate::container::{FourCc, SectionEntry};
+use crate::issue::{Issue, IssueCode};
+use crate::sections::Sections;
+use crate::{ndf_maps, ndf_maps_check, placement_check, provenance};
+
+/// A section kind this version reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KnownKind {
+    /// The kind.
+    pub kind: FourCc,
+    /// The version of its layout that is read.
+    pub version: u16,
+    /// What it holds, in a few words.
+    pub title: &'static str,
+}
+
+/// Every kind this version reads.
+pub const KNOWN: &[KnownKind] = &[
+    KnownKind { kind: provenance::PROVENANCE, version: 1, title: "provenance" },
+    KnownKind { kind: ndf_maps::PARAMS, version: 1, title: "NDF map parameters" },
+    KnownKind { kind: ndf_maps::TILES, version: 1, title: "NDF map tiles" },
+    KnownKind { kind: ndf_maps::DENSITY, version: 1, title: "NDF map density" },
+    KnownKind { kind: ndf_maps::NORMALS, version: 1, title: "example normals" },
+    KnownKind { kind: ndf_maps::PLACEMENT, version: 1, title: "placement parameters" },
+    KnownKind { kind: ndf_maps::PALETTE, version: 1, title: "placement palette" },
+    KnownKind { kind: ndf_maps::NOISE, version: 1, title: "placement noise map" },
+    KnownKind { kind: ndf_maps::CLASSES, version: 1, title: "placement class map" },
+    KnownKind { kind: ndf_maps::LAYERS, version: 1, title: "layered material" },
+];
+
+/// A check of the contents of some kinds.
+pub(crate) type Check = fn(&Sections<'_>, &mut Vec<Issue>);
+
+/// Every check of contents.
+pub(crate) const CHECKS: &[Check] = &[provenance::check, ndf_maps_check::check, placement_check::check];
+
+/// What this version knows of a kind.
+pub fn known(kind: FourCc) -> Option<&'static KnownKind> {
+    KNOWN.iter().find(|known| known.kind == kind)
+}
+
+/// Says whether an entry is of a kind and version this program reads: an error when it is required, a warning when
+/// it can be skipped.
+pub(crate) fn check(entry: &SectionEntry) -> Option<Issue> {
+    let (code, message) = match known(entry.kind) {
+        None if entry.required => {
+            (IssueCode::UnknownRequired, String::from("the pack cannot be used without it; use a newer reader"))
+        }
+        None => (IssueCode::UnknownOptional, String::from("it is skipped; a newer reader may use it")),
+        Some(known) if known.version != entry.version => {
+            let message = format!("this program reads version {}, found {}", known.version, entry.version);
+            (IssueCode::UnsupportedSectionVersion, format!("{message}; use a newer reader"))
+        }
+        Some(_) => return None,
+    };
+    let issue = if entry.required { Issue::error(code, message) } else { Issue::warning(code, message) };
+    Some(issue.at(entry.offset).of(entry.label()))
+}

@@ -1,0 +1,13 @@
+//! Tests of the container, its checks and its documentation.
+
+mod arbitrary;
+mod bytes;
+mod corpus_container;
+mod corpus_typed;
+mod corrupt_corpus;
+mod damage;
+mod documentation;
+mod limits;
+mod round_trip;
+mod samples;
+mod write_atomic;

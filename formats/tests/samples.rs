@@ -1,0 +1,205 @@
+//! Small good packs, and the means to make bad ones of them.
+
+use glint_formats::container::{ENTRY_BYTES, FourCc, HEADER_BYTES, Limits, full_mip_count};
+use glint_formats::ndf_maps::*;
+use glint_formats::provenance::{InputDigest, PROVENANCE, Provenance};
+use glint_formats::{IssueCode, PackBuilder, Resource, Section, validate, vk_format};
+use xxhash_rust::xxh3::xxh3_64;
+
+/// Name of the sample material.
+pub const ROCK: &str = "rock";
+
+pub fn pack(sections: Vec<Section>) -> Vec<u8> {
+    let mut builder = PackBuilder::new();
+    for section in sections {
+        builder.push(section).unwrap();
+    }
+    builder.finish().unwrap()
+}
+
+pub fn codes(bytes: &[u8]) -> Vec<IssueCode> {
+    validate(bytes, &Limits::default()).iter().map(|issue| issue.code).collect()
+}
+
+pub fn provenance() -> Provenance {
+    Provenance {
+        tool_version: String::from("0.1.0"),
+        method: String::from("ndf-maps"),
+        options: vec![(String::from("preset"), String::from("draft"))],
+        seed: 7,
+        inputs: vec![InputDigest::of("rock.png", b"pixels")],
+        normal_convention: String::from("y-up"),
+        ..Provenance::default()
+    }
+}
+
+pub fn provenance_section() -> Section {
+    Section::parameters(PROVENANCE, "", &provenance()).optional()
+}
+
+/// A map of 3 × 2 texels: two tiles of 2 texels, one of 4.
+pub fn ndf_params() -> NdfMapsParams {
+    NdfMapsParams {
+        width: 3,
+        height: 2,
+        wrap: Wrap::Repeat,
+        intrinsic_roughness: 0.01,
+        storage: DensityStorage::F16,
+        levels: vec![
+            Level { tile_texels: 2, tiles_x: 2, tiles_y: 1, first_tile: 0 },
+            Level { tile_texels: 4, tiles_x: 1, tiles_y: 1, first_tile: 2 },
+        ],
+        max_error: 0.1,
+        measured: MeasuredError { mean: 0.01, p95: 0.02, worst: 0.03, energy: 0.001 },
+    }
+}
+
+pub fn tiles() -> Vec<TileRecord> {
+    let tile = TileRecord {
+        origin: [-0.5, -0.5],
+        inv_spacing: [2.0, 2.0],
+        scale: 1.0,
+        texel_offset: 0,
+        size: 2 | 2 << 16,
+        error: 0.02,
+    };
+    vec![tile, TileRecord { texel_offset: 4, ..tile }, TileRecord { texel_offset: 8, ..tile }]
+}
+
+/// Twelve half floats, all 1.0.
+pub fn density() -> Vec<u16> {
+    vec![0x3c00; 12]
+}
+
+pub fn normals_section() -> Section {
+    let resource =
+        Resource::Texture { vk_format: vk_format::R16G16_SNORM, width: 3, height: 2, layers: 1, faces: 1, mips: 1 };
+    Section::texture(NORMALS, ROCK, resource, vec![0; 24])
+}
+
+/// The four sections of NDF maps.
+pub fn ndf_maps(params: &NdfMapsParams, tiles: &[TileRecord]) -> Vec<Section> {
+    vec![
+        Section::parameters(PARAMS, ROCK, params),
+        Section::buffer(TILES, ROCK, tiles),
+        Section::buffer(DENSITY, ROCK, &density()).compressed(),
+        normals_section(),
+    ]
+}
+
+pub fn good_ndf_maps() -> Vec<Section> {
+    ndf_maps(&ndf_params(), &tiles())
+}
+
+pub fn stochastic(cells_x: u32, cells_y: u32) -> PlacementParams {
+    let kind = PlacementKind::Stochastic { cells_x, cells_y, cell_texels: 1.5, seed: 7 };
+    PlacementParams { kind, palette_len: 2 }
+}
+
+pub fn palette() -> Vec<TransformRecord> {
+    let identity = [1.0, 0.0, 0.0, 1.0];
+    let quarter_turn = [0.0, 1.0, -1.0, 0.0];
+    vec![
+        TransformRecord { position_to_local: identity, normal_to_local: identity },
+        TransformRecord { position_to_local: quarter_turn, normal_to_local: quarter_turn },
+    ]
+}
+
+pub fn noise_texels() -> Vec<NoiseTexel> {
+    let texel = NoiseTexel { centre: 0x8000_8000, offset: 0, class_and_owners: 0x4480_0001, reserved: 0 };
+    vec![texel, NoiseTexel { class_and_owners: 0x4444_0000, ..texel }]
+}
+
+pub fn noise_section(texels: &[NoiseTexel], width: u32, height: u32) -> Section {
+    let resource =
+        Resource::Texture { vk_format: vk_format::R32G32B32A32_UINT, width, height, layers: 1, faces: 1, mips: 1 };
+    Section::texture(NOISE, ROCK, resource, bytemuck::cast_slice(texels).to_vec())
+}
+
+/// A class map of 2 × 1 cells with `layers` layers.
+pub fn classes_section(layers: u32) -> Section {
+    let mips = full_mip_count(2, 1);
+    let resource =
+        Resource::Texture { vk_format: vk_format::R8G8B8A8_UNORM, width: 2, height: 1, layers, faces: 1, mips };
+    Section::texture(CLASSES, ROCK, resource, vec![0; 12 * layers as usize])
+}
+
+/// The four sections of a stochastic placement of 2 × 1 cells.
+pub fn placement(palette: &[TransformRecord], noise: &[NoiseTexel]) -> Vec<Section> {
+    vec![
+        Section::parameters(PLACEMENT, ROCK, &stochastic(2, 1)),
+        Section::buffer(PALETTE, ROCK, palette),
+        noise_section(noise, 2, 1),
+        classes_section(1),
+    ]
+}
+
+pub fn layered() -> LayeredMaterial {
+    LayeredMaterial { coat: String::from(ROCK), base: String::from(ROCK), coat_f0: 0.04, base_f0: [0.5; 3] }
+}
+
+/// A pack with every kind of section, one of them compressed.
+pub fn full_pack() -> Vec<u8> {
+    let mut sections = vec![provenance_section()];
+    sections.extend(good_ndf_maps());
+    sections.extend(placement(&palette(), &noise_texels()));
+    sections.push(Section::parameters(LAYERS, "coated rock", &layered()));
+    pack(sections)
+}
+
+/// A section of four bytes that the checks of contents do not look at.
+pub fn plain_section(name: &str) -> Section {
+    Section::buffer(FourCc(*b"test"), name, &[1u8, 2, 3, 4]).optional()
+}
+
+/// Where a field of a table entry lies in the file.
+pub fn entry_at(entry: usize, field: usize) -> usize {
+    HEADER_BYTES as usize + entry * ENTRY_BYTES as usize + field
+}
+
+/// Puts bytes in place and makes header checksum and file length right again.
+pub fn patched(mut bytes: Vec<u8>, at: usize, with: &[u8]) -> Vec<u8> {
+    bytes[at..at + with.len()].copy_from_slice(with);
+    seal(&mut bytes);
+    bytes
+}
+
+/// Makes file length and header checksum right, where header and table are there at all.
+pub fn seal(bytes: &mut [u8]) {
+    if bytes.len() < HEADER_BYTES as usize {
+        return;
+    }
+    let len = bytes.len() as u64;
+    bytes[24..32].copy_from_slice(&len.to_le_bytes());
+    reseal_header(bytes);
+}
+
+/// Makes the header checksum right and leaves the stated length.
+pub fn reseal_header(bytes: &mut [u8]) {
+    let count = u64::from(u32::from_le_bytes(bytes[16..20].try_into().unwrap()));
+    let end = HEADER_BYTES + count * ENTRY_BYTES;
+    if end > bytes.len() as u64 {
+        return;
+    }
+    bytes[32..40].fill(0);
+    let checksum = xxh3_64(&bytes[..end as usize]);
+    bytes[32..40].copy_from_slice(&checksum.to_le_bytes());
+}
+
+/// Makes every checksum right whose section lies in the file.
+pub fn reseal_sections(bytes: &mut [u8]) {
+    let mut at = HEADER_BYTES as usize;
+    while let Some(entry) = bytes.get(at..at + ENTRY_BYTES as usize) {
+        let word = |i: usize| u64::from_le_bytes(entry[i..i + 8].try_into().unwrap());
+        let range = word(8)..word(8).saturating_add(word(16));
+        if range.end <= bytes.len() as u64 {
+            let checksum = xxh3_64(&bytes[range.start as usize..range.end as usize]);
+            bytes[at + 32..at + 40].copy_from_slice(&checksum.to_le_bytes());
+        }
+        at += ENTRY_BYTES as usize;
+        let count = u32::from_le_bytes(bytes[16..20].try_into().unwrap()) as usize;
+        if at >= HEADER_BYTES as usize + count.saturating_mul(ENTRY_BYTES as usize) {
+            return;
+        }
+    }
+}
