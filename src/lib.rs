@@ -1,3 +1,12 @@
-//! What the three programs share: flags, files, progress, reports.
+//! What the programs share: flags, files, progress, reports, the preview.
 
+pub mod canvas;
+pub mod cli;
+pub mod commands;
+pub mod exit;
+pub mod info;
 pub mod input;
+pub mod output;
+pub mod pack;
+pub mod preview;
+pub mod progress;

@@ -5,7 +5,7 @@ use glint_bake::input::{InputOptions, load_normal_map};
 
 /// Slope deviation along u and v that each material is to have, and whether it is the surface of a height field.
 const EXPECTED: [(&str, [f64; 2], bool); 4] = [
-    ("brushed", [0.01, 0.4], true),
+    ("brushed", [0.03, 0.4], true),
     ("scratches", [0.06, 0.06], true),
     ("flakes", [0.27, 0.27], false),
     ("leather", [0.1, 0.1], true),
@@ -18,12 +18,8 @@ fn materials_are_like_real_ones_and_tile() {
         assert_eq!(name, expected_name);
         let path = folder.path().join(format!("{name}.png"));
         make(128, 96, 7).save(&path).unwrap();
-        if let Some(keep) = std::env::var_os("GLINT_KEEP") {
-            make(256, 256, 7).save(std::path::Path::new(&keep).join(format!("{name}.png"))).unwrap();
-        }
         let loaded = load_normal_map(&path, &InputOptions::default()).unwrap();
         let report = &loaded.report;
-        println!("{name} {report:?}");
         assert!(!report.seam_suspected, "{name}: {report:?}");
         assert!(!report.flipped_green_suspected, "{name}: {report:?}");
         let curl = report.curl_correlation.unwrap();

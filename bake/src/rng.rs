@@ -3,13 +3,23 @@
 use rand::Rng;
 use rand_pcg::Pcg32;
 
+/// Every bit of the result depends on every bit of `x` (the finaliser of splitmix64).
+fn mixed(x: u64) -> u64 {
+    let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ x >> 31
+}
+
 /// Generator of one item.
 pub struct ItemRng(Pcg32);
 
 impl ItemRng {
     /// The stream of `item` under `seed`; `purpose` keeps uses of the same seed apart.
     pub fn new(seed: u64, purpose: u32, item: u32) -> ItemRng {
-        ItemRng(Pcg32::new(seed, (purpose as u64) << 32 | item as u64))
+        // Streams of neighbouring PCG states are correlated, so seed and item are mixed before they choose one.
+        let stream = mixed(seed ^ mixed((purpose as u64) << 32 | item as u64));
+        ItemRng(Pcg32::new(stream, mixed(stream)))
     }
 
     /// 32 uniform bits.

@@ -99,7 +99,7 @@ pub struct NdfMapsParams {
     pub storage: DensityStorage,
     /// Levels, finest (tile of 2 texels) first; the last has one tile.
     pub levels: Vec<Level>,
-    /// E₁ that was asked of every tile.
+    /// E₁ that was asked of tiles on average.
     pub max_error: f32,
     /// Error as the bake measured it.
     pub measured: MeasuredError,
@@ -135,6 +135,15 @@ impl TileRecord {
     /// Rows of texels.
     pub fn height(&self) -> u32 {
         self.size >> 16
+    }
+    /// Whether the density at `s` may be other than zero: `s` is within the reach of a spline of the tile.
+    pub fn holds(&self, s: impl Into<[f32; 2]>) -> bool {
+        let s = s.into();
+        let inside = |axis: usize, texels: u32| {
+            let p = (s[axis] - self.origin[axis]) * self.inv_spacing[axis];
+            (-1.5..=texels as f32 + 0.5).contains(&p)
+        };
+        inside(0, self.width()) && inside(1, self.height())
     }
 }
 

@@ -1,2 +1,5 @@
-//! placeholder, replaced with the command line.
-fn main() {}
+//! Bakes packs, and shows what they look like.
+
+fn main() -> std::process::ExitCode {
+    glint_bake::cli::run(std::env::args_os(), glint_bake::commands::bake)
+}

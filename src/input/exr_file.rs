@@ -91,13 +91,9 @@ fn three_channels(
 }
 
 /// The only channel, or the one called Y (luminance), Z (depth) or height.
-fn one_channel(
-    path: &Path,
-    channels: &[AnyChannel<FlatSamples>],
-) -> std::result::Result<Vec<f32>, InputError> {
-    let named = |c: &&AnyChannel<FlatSamples>| {
-        ["y", "z", "height"].contains(&short_name(c).to_ascii_lowercase().as_str())
-    };
+fn one_channel(path: &Path, channels: &[AnyChannel<FlatSamples>]) -> std::result::Result<Vec<f32>, InputError> {
+    let named =
+        |c: &&AnyChannel<FlatSamples>| ["y", "z", "height"].contains(&short_name(c).to_ascii_lowercase().as_str());
     let channel = match channels {
         [only] => Some(only),
         several => several.iter().find(named),

@@ -46,12 +46,14 @@ pub(super) fn detect(path: &Path, bytes: &[u8]) -> Result<Format, InputError> {
         ));
     }
     match image::guess_format(bytes) {
-        Ok(
-            format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Tiff | ImageFormat::WebP),
-        ) => Ok(Format::Raster(format)),
+        Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Tiff | ImageFormat::WebP)) => {
+            Ok(Format::Raster(format))
+        }
         Ok(other) => Err(InputError::unsupported(
             path,
-            format!("the file is {other:?}, which is not read; expected {READ}: convert it without changing its values"),
+            format!(
+                "the file is {other:?}, which is not read; expected {READ}: convert it without changing its values"
+            ),
         )),
         Err(_) => Err(InputError::bad(
             path,
@@ -73,7 +75,8 @@ pub(super) fn extension_note(path: &Path, format: Format) -> Option<String> {
         },
     };
     let found = extension(path);
-    (!extensions.contains(&found.as_str())).then(|| format!("named .{found}, but the content is {name}; read as {name}"))
+    (!extensions.contains(&found.as_str()))
+        .then(|| format!("named .{found}, but the content is {name}; read as {name}"))
 }
 
 fn extension(path: &Path) -> String {

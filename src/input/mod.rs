@@ -117,7 +117,8 @@ pub fn load_normal_map(path: &Path, options: &InputOptions) -> Result<LoadedMap,
     let bytes = read(path, options.max_memory)?;
     let (pixels, mut warnings) = decode(path, &bytes, options)?;
     let raw = raw_normals(path, pixels, options, &mut warnings)?;
-    let normal_options = NormalOptions { wrap: options.wrap, y: if options.height.is_some() { GreenAxis::Up } else { options.y } };
+    let normal_options =
+        NormalOptions { wrap: options.wrap, y: if options.height.is_some() { GreenAxis::Up } else { options.y } };
     let (map, report) = NormalMap::from_vectors(&raw, &normal_options).map_err(|e| from_bake(path, e))?;
     warn_of(&report, options, &mut warnings);
     Ok(LoadedMap {
@@ -174,7 +175,9 @@ fn check_size(
     if width.max(height) > MAX_SIDE as u64 {
         return Err(InputError::limit(
             path,
-            format!("the image is {width}×{height}; at most {MAX_SIDE} texels a side: scale it down or cut it into tiles"),
+            format!(
+                "the image is {width}×{height}; at most {MAX_SIDE} texels a side: scale it down or cut it into tiles"
+            ),
         ));
     }
     // Three floats a texel while decoding, two floats in the finished map.
@@ -247,7 +250,8 @@ fn warn_of(report: &NormalReport, options: &InputOptions, warnings: &mut Vec<Str
         ));
     }
     if report.below_horizon > 0 {
-        warnings.push(format!("{} normals point below the horizon (z ≤ 0); pushed just above it", report.below_horizon));
+        warnings
+            .push(format!("{} normals point below the horizon (z ≤ 0); pushed just above it", report.below_horizon));
     }
     if report.zero_length > 0 {
         warnings.push(format!("{} normals have no direction (mid-grey); taken as flat", report.zero_length));
@@ -264,7 +268,10 @@ fn warn_of(report: &NormalReport, options: &InputOptions, warnings: &mut Vec<Str
         ));
     }
     if report.seam_suspected {
-        warnings.push("opposite edges do not fit, so the repeated map shows a seam; give --wrap clamp if it is not meant to tile".into());
+        warnings.push(
+            "opposite edges do not fit, so the repeated map shows a seam; give --wrap clamp if it is not meant to tile"
+                .into(),
+        );
     }
     let tilt = report.mean_normal[0].hypot(report.mean_normal[1]).atan2(report.mean_normal[2]).to_degrees();
     if tilt > TILT_DEGREES {

@@ -129,7 +129,9 @@ fn note_storage(
     }
     let eight_bit = stored.bits_per_pixel() / stored.channel_count() as u16 <= 8;
     if options.height.is_some() && eight_bit {
-        notes.push("8-bit heights: slopes come in steps of the scale / 510, which shows as terraces; prefer 16 bits".into());
+        notes.push(
+            "8-bit heights: slopes come in steps of the scale / 510, which shows as terraces; prefer 16 bits".into(),
+        );
     }
 }
 
@@ -182,7 +184,9 @@ fn has_varying_alpha(image: &DynamicImage) -> bool {
 
 fn from_image(path: &Path, error: ImageError) -> InputError {
     match error {
-        ImageError::Unsupported(e) => InputError::unsupported(path, format!("{e}; export it as plain 8- or 16-bit RGB")),
+        ImageError::Unsupported(e) => {
+            InputError::unsupported(path, format!("{e}; export it as plain 8- or 16-bit RGB"))
+        }
         ImageError::Limits(e) => InputError::limit(path, format!("{e}; raise --max-memory or scale the image down")),
         ImageError::IoError(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => cut_off(path),
         other => InputError::bad(path, format!("the image is damaged: {other}; copy or export it again")),

@@ -30,7 +30,7 @@ pub fn brushed(width: u32, height: u32, seed: u64) -> RgbImage {
         for i in 0..length {
             let along = (i as f32 + 0.5) / length as f32;
             let taper = (6.0 * along.min(1.0 - along)).min(1.0);
-            *field.at(start + i, row) -= 0.35 * depth * taper;
+            *field.at(start + i, row) -= 0.45 * depth * taper;
         }
     }
     field.normals()
@@ -39,14 +39,15 @@ pub fn brushed(width: u32, height: u32, seed: u64) -> RgbImage {
 /// A polished plate with straight scratches at all angles: a V-shaped groove between two raised lips.
 pub fn scratches(width: u32, height: u32, seed: u64) -> RgbImage {
     let mut field = Field::flat(width, height);
-    for scratch in 0..(width as u64 * height as u64).div_ceil(700) {
+    for scratch in 0..(width as u64 * height as u64).div_ceil(500) {
         let mut rng = Pcg32::new(seed, scratch);
         let (u, v) = (width as f32 * rng.random::<f32>(), height as f32 * rng.random::<f32>());
         let [du, dv] = direction(&mut rng);
         let shallow = rng.random::<f32>();
-        let depth = 0.05 + 0.4 * shallow * shallow;
-        let length = 10.0 + 60.0 * rng.random::<f32>();
-        let half_width = 1.0 + rng.random::<f32>();
+        // Most scratches are shallow hairlines, a few cut deep.
+        let depth = 0.06 + 0.7 * shallow * shallow * shallow;
+        let length = 15.0 + 100.0 * rng.random::<f32>();
+        let half_width = 0.8 + 0.8 * shallow;
         // Texels of the square around the scratch, each seen once, so that a scratch does not deepen itself.
         let reach = (length / 2.0 + 3.0).ceil() as i64;
         for j in -reach..=reach {
@@ -56,7 +57,7 @@ pub fn scratches(width: u32, height: u32, seed: u64) -> RgbImage {
                 if along < length / 2.0 && across < 2.0 {
                     let groove = (across - 1.0).max(-1.0).min(0.6 * (2.0 - across));
                     let taper = (8.0 * (0.5 - along / length)).min(1.0);
-                    *field.at(u as i64 + i, v as i64 + j) += 0.5 * depth * groove * taper;
+                    *field.at(u as i64 + i, v as i64 + j) += depth * groove * taper;
                 }
             }
         }
@@ -87,7 +88,7 @@ pub fn leather(width: u32, height: u32, seed: u64) -> RgbImage {
             let crease = ((grain.second - grain.first) / 7.0).min(1.0);
             let dome = 1.0 - (1.0 - crease) * (1.0 - crease);
             let pore = (1.0 - pores.nearest(i, j).first / 2.0).max(0.0);
-            *field.at(i as i64, j as i64) = 1.3 * dome - 0.25 * pore * crease;
+            *field.at(i as i64, j as i64) = 0.8 * dome - 0.16 * pore * crease;
         }
     }
     field.normals()

@@ -18,12 +18,15 @@ pub const MAX_EXAMPLE_TEXELS: u64 = 128 * 128;
 /// Smallest and largest intrinsic roughness σ_r.
 pub const ROUGHNESS_RANGE: (f64, f64) = (1e-4, 1.0);
 
+/// Error of one tile at most, relative to what is asked of the mean.
+const WORST_OF_MEAN: f64 = 3.0;
+
 /// Options of one example's bake.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NdfMapsOptions {
     /// Intrinsic roughness σ_r, a standard deviation in the projected-normal disk.
     pub roughness: f64,
-    /// E₁ asked of every tile (ignored by the paper's storage).
+    /// Mean E₁ over tiles; no tile has more than three times that (ignored by the paper's storage).
     pub max_error: f64,
     /// How densities are stored.
     pub storage: DensityStorage,
@@ -67,15 +70,16 @@ pub fn bake(map: &NormalMap, options: &NdfMapsOptions, progress: &dyn Progress) 
         norm: LobeNorm::new(options.roughness),
     };
     progress.begin("NDF maps", rects.len() as u64);
-    let fitted: Vec<FittedTile> = rects
+    let candidates: Vec<Vec<FittedTile>> = rects
         .par_iter()
         .map(|rect| {
-            let tile = tile_fit::fit_tile(map, *rect, &settings);
+            let tiles = tile_fit::fit_tile(map, *rect, &settings);
             progress.advance(1);
-            tile
+            tiles
         })
         .collect();
     progress.end();
+    let fitted = choose(candidates, options.max_error);
 
     let texel_bytes = options.storage.texel_bytes() as usize;
     let mut tiles = Vec::with_capacity(fitted.len());
@@ -111,13 +115,41 @@ pub fn bake(map: &NormalMap, options: &NdfMapsOptions, progress: &dyn Progress) 
     })
 }
 
+/// One candidate a tile: the fewest bytes whose mean error is at most `max_error`, no tile over [`WORST_OF_MEAN`] times
+/// that. Candidates are sorted by error. With a price λ on error, each tile takes the cheapest bytes + λ · error; the
+/// smallest λ that keeps the mean is found by bisection.
+fn choose(candidates: Vec<Vec<FittedTile>>, max_error: f64) -> Vec<FittedTile> {
+    let pick = |tiles: &[FittedTile], price: f64| {
+        let cost = |t: &FittedTile| t.bytes.len() as f64 + price * t.error / max_error;
+        let mut best = 0;
+        for (k, tile) in tiles.iter().enumerate() {
+            if tile.error <= WORST_OF_MEAN * max_error && cost(tile) < cost(&tiles[best]) {
+                best = k;
+            }
+        }
+        best
+    };
+    let mean = |price: f64| {
+        let total: f64 = candidates.iter().map(|tiles| tiles[pick(tiles, price)].error).sum();
+        total / candidates.len() as f64
+    };
+    // Prices in bytes for one `max_error` of error.
+    let (mut low, mut high) = (0.0, 1e9);
+    if mean(low) > max_error {
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if mean(middle) > max_error { low = middle } else { high = middle }
+        }
+    } else {
+        high = 0.0;
+    }
+    candidates.into_iter().map(|mut tiles| tiles.swap_remove(pick(&tiles, high))).collect()
+}
+
 fn check(map: &NormalMap, options: &NdfMapsOptions) -> Result<()> {
     let (lo, hi) = ROUGHNESS_RANGE;
     if !(lo..=hi).contains(&options.roughness) {
-        return Err(BakeError::BadOption(format!(
-            "intrinsic roughness {} is outside {lo} … {hi}",
-            options.roughness
-        )));
+        return Err(BakeError::BadOption(format!("intrinsic roughness {} is outside {lo} … {hi}", options.roughness)));
     }
     if options.max_error.is_nan() || options.max_error <= 0.0 {
         return Err(BakeError::BadOption(format!("maximum error {} is not above 0", options.max_error)));

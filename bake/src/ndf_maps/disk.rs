@@ -56,52 +56,62 @@ fn mass_in_disk(radius: f64, sigma: f64) -> f64 {
     sum * h / 3.0
 }
 
-/// Integral over the unit disk of a grid of `width` × `height` values interpolated bilinearly (zero outside the grid).
-pub fn bilinear_integral(values: &[f32], width: usize, height: usize, origin: [f64; 2], spacing: [f64; 2]) -> f64 {
-    let at = |i: i64, j: i64| {
+/// Integral over the unit disk of a grid of quadratic-spline coefficients (zero outside the grid), texel (0, 0) at
+/// `origin`. Whole cells around nodes are exact; cells on the rim are summed over 16² points.
+pub fn spline_integral(values: &[f32], width: usize, height: usize, origin: [f64; 2], spacing: [f64; 2]) -> f64 {
+    let texel = |i: i64, j: i64| {
         if i < 0 || j < 0 || i >= width as i64 || j >= height as i64 {
             0.0
         } else {
             values[j as usize * width + i as usize] as f64
         }
     };
+    let far = |axis: usize, n: usize| {
+        let reach = 1.5 * spacing[axis];
+        (origin[axis] - reach).abs().max((origin[axis] + spacing[axis] * (n - 1) as f64 + reach).abs())
+    };
+    if far(0, width).hypot(far(1, height)) <= 1.0 {
+        return values.iter().map(|v| *v as f64).sum::<f64>() * spacing[0] * spacing[1];
+    }
     let mut total = 0.0;
-    for j in -1..height as i64 {
-        for i in -1..width as i64 {
-            let v = [at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)];
-            let low = [origin[0] + spacing[0] * i as f64, origin[1] + spacing[1] * j as f64];
-            total += cell_integral(v, low, spacing);
+    for j in -1..=height as i64 {
+        for i in -1..=width as i64 {
+            let middle = [origin[0] + spacing[0] * i as f64, origin[1] + spacing[1] * j as f64];
+            total += cell_mean(|a, b| texel(i + a, j + b), middle, spacing);
         }
     }
     total * spacing[0] * spacing[1]
 }
 
-/// Mean over one cell of the bilinear interpolant times the disk's indicator.
-fn cell_integral(v: [f64; 4], low: [f64; 2], spacing: [f64; 2]) -> f64 {
-    let nearest = |low: f64, h: f64| if low > 0.0 { low } else { (-(low + h)).max(0.0) };
-    let farthest = |low: f64, h: f64| low.abs().max((low + h).abs());
-    let far = farthest(low[0], spacing[0]).hypot(farthest(low[1], spacing[1]));
-    if far <= 1.0 {
-        return 0.25 * (v[0] + v[1] + v[2] + v[3]);
-    }
-    if nearest(low[0], spacing[0]).hypot(nearest(low[1], spacing[1])) >= 1.0 {
+/// Mean of the spline surface times the disk's indicator over the cell around a node; `texel(a, b)` gives the
+/// coefficients around it.
+fn cell_mean(texel: impl Fn(i64, i64) -> f64, middle: [f64; 2], spacing: [f64; 2]) -> f64 {
+    let (x, y) = (middle[0].abs(), middle[1].abs());
+    let (hx, hy) = (0.5 * spacing[0], 0.5 * spacing[1]);
+    if (x - hx).max(0.0).hypot((y - hy).max(0.0)) >= 1.0 {
         return 0.0;
     }
+    let sum = |wx: [f64; 3], wy: [f64; 3]| {
+        let row = |b: usize| (0..3).map(|a| wx[a] * texel(a as i64 - 1, b as i64 - 1)).sum::<f64>();
+        wy[0] * row(0) + wy[1] * row(1) + wy[2] * row(2)
+    };
+    if (x + hx).hypot(y + hy) <= 1.0 {
+        const WHOLE: [f64; 3] = [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0];
+        return sum(WHOLE, WHOLE);
+    }
     const SUB: usize = 16;
-    let mut sum = 0.0;
+    let mut total = 0.0;
     for b in 0..SUB {
-        let fy = (b as f64 + 0.5) / SUB as f64;
+        let fy = (b as f64 + 0.5) / SUB as f64 - 0.5;
         for a in 0..SUB {
-            let fx = (a as f64 + 0.5) / SUB as f64;
-            let (x, y) = (low[0] + fx * spacing[0], low[1] + fy * spacing[1]);
-            if x * x + y * y <= 1.0 {
-                let top = v[0] + (v[1] - v[0]) * fx;
-                let bottom = v[2] + (v[3] - v[2]) * fx;
-                sum += top + (bottom - top) * fy;
+            let fx = (a as f64 + 0.5) / SUB as f64 - 0.5;
+            if (middle[0] + fx * spacing[0]).hypot(middle[1] + fy * spacing[1]) <= 1.0 {
+                let weights = |f: f64| [0.5 * (0.5 - f) * (0.5 - f), 0.75 - f * f, 0.5 * (0.5 + f) * (0.5 + f)];
+                total += sum(weights(fx), weights(fy));
             }
         }
     }
-    sum / (SUB * SUB) as f64
+    total / (SUB * SUB) as f64
 }
 
 #[cfg(test)]
@@ -130,7 +140,7 @@ mod tests {
     fn a_constant_grid_integrates_to_the_disk_s_area() {
         let n = 41;
         let values = vec![1.0f32; n * n];
-        let integral = bilinear_integral(&values, n, n, [-1.0, -1.0], [0.05, 0.05]);
+        let integral = spline_integral(&values, n, n, [-1.0, -1.0], [0.05, 0.05]);
         assert!((integral - std::f64::consts::PI).abs() < 1e-3, "{integral}");
     }
 }

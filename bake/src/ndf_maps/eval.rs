@@ -5,8 +5,9 @@
 
 use super::bake::BakedNdfMaps;
 use super::placement::BakedPlacement;
+use super::spline::Taps;
 use glam::{Mat2, Vec2};
-use glint_formats::ndf_maps::{DensityStorage, TransformRecord, Wrap};
+use glint_formats::ndf_maps::{DensityStorage, Wrap};
 use half::f16;
 
 /// A material as a renderer holds it: one example's maps and how they cover the surface.
@@ -25,18 +26,23 @@ pub struct TileTerm {
     pub tile: u32,
     /// Palette entry of the example that shows it.
     pub class: u32,
-    /// Share of the footprint.
+    /// Share of the footprint times |det normal_to_local|.
     pub weight: f32,
 }
 
-/// A Gaussian lobe in the surface's projected-normal disk.
+/// A small box of the example seen as one lobe: its normals fill a parallelogram evenly, convolved with the intrinsic
+/// lobe. Unit coordinates are those of the example's disk, turned so that the longer edge lies along x, over σ_r.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LobeTerm {
-    /// Mean projected normal.
+    /// Middle of the parallelogram in the surface's disk.
     pub mean: Vec2,
-    /// Inverse covariance: xx, xy, yy.
-    pub inverse: [f32; 3],
-    /// Share of the footprint times the lobe's density at its mean.
+    /// Surface's disk → unit coordinates.
+    pub to_unit: Mat2,
+    /// Half the parallelogram's length and height in unit coordinates.
+    pub half: Vec2,
+    /// Its shear, Δx / Δy.
+    pub shear: f32,
+    /// Share of the footprint times the Jacobian of `to_unit`, over the lobe's mass inside the disk.
     pub peak: f32,
 }
 
@@ -74,21 +80,27 @@ impl Material {
         }
         let mut sum = 0.0;
         for term in &terms.tiles {
-            let TransformRecord { normal_to_local, .. } = self.placement.palette[term.class as usize];
-            let to_local = matrix(normal_to_local);
-            sum += term.weight * to_local.determinant().abs() * self.maps.tile_density(term.tile, to_local * s);
+            let to_local = matrix(self.placement.palette[term.class as usize].normal_to_local);
+            sum += term.weight * self.maps.tile_density(term.tile, to_local * s);
         }
         for lobe in &terms.lobes {
-            let d = s - lobe.mean;
-            let [xx, xy, yy] = lobe.inverse;
-            sum += lobe.peak * (-0.5 * (xx * d.x * d.x + 2.0 * xy * d.x * d.y + yy * d.y * d.y)).exp();
+            sum += lobe.density(s);
         }
         sum
     }
 }
 
+impl Material {
+    /// Whether the query `s` lies in the box of a term's tile, so that texels are read for it.
+    pub fn reads(&self, term: &TileTerm, s: Vec2) -> bool {
+        let to_local = matrix(self.placement.palette[term.class as usize].normal_to_local);
+        self.maps.tiles[term.tile as usize].holds(to_local * s)
+    }
+}
+
 impl BakedNdfMaps {
-    /// Density of one tile at the example's projected normal `s`: bilinear between decoded texels, 0 outside the box.
+    /// Density of one tile at the example's projected normal `s`: quadratic splines over decoded texels (bilinear for
+    /// the paper's storage), 0 outside the box.
     pub fn tile_density(&self, tile: u32, s: Vec2) -> f32 {
         if s.length_squared() > 1.0 {
             return 0.0;
@@ -96,21 +108,28 @@ impl BakedNdfMaps {
         let record = &self.tiles[tile as usize];
         let (width, height) = (record.width() as i32, record.height() as i32);
         let p = (s - Vec2::from(record.origin)) * Vec2::from(record.inv_spacing);
-        let cell = p.floor();
-        let f = p - cell;
-        let (i, j) = (cell.x as i32, cell.y as i32);
-        if i < -1 || j < -1 || i >= width || j >= height {
+        if !record.holds(s) {
             return 0.0;
         }
-        let texel = |i: i32, j: i32| {
-            if i < 0 || j < 0 || i >= width || j >= height {
-                return 0.0;
+        let bilinear = self.params.storage == DensityStorage::PaperF32;
+        let (x, y) = if bilinear { (tent(p.x), tent(p.y)) } else { (Taps::at(p.x), Taps::at(p.y)) };
+        let mut sum = 0.0;
+        for b in 0..3 {
+            let j = y.first + b;
+            if j < 0 || j >= height {
+                continue;
             }
-            self.texel(record.texel_offset as usize + (j * width + i) as usize)
-        };
-        let top = texel(i, j) * (1.0 - f.x) + texel(i + 1, j) * f.x;
-        let bottom = texel(i, j + 1) * (1.0 - f.x) + texel(i + 1, j + 1) * f.x;
-        record.scale * (top * (1.0 - f.y) + bottom * f.y)
+            let row = record.texel_offset as i32 + j * width;
+            let mut across = 0.0;
+            for a in 0..3 {
+                let i = x.first + a;
+                if i >= 0 && i < width {
+                    across += x.weights[a as usize] * self.texel((row + i) as usize);
+                }
+            }
+            sum += y.weights[b as usize] * across;
+        }
+        record.scale * sum
     }
 
     /// Decoded density texel, relative to its tile's scale.
@@ -155,19 +174,74 @@ impl BakedNdfMaps {
     }
 }
 
+/// Bilinear filtering as three taps, the last of no weight.
+fn tent(p: f32) -> Taps {
+    let cell = p.floor();
+    Taps { first: cell as i32, weights: [1.0 - (p - cell), p - cell, 0.0] }
+}
+
 impl LobeTerm {
-    /// Lobe of a sub-footprint: `mean` and `covariance` in the surface's disk, `weight` its share of the footprint.
+    /// Lobe of a box of edge `edge` (example texels) around an example point of projected normal `s` and Jacobian
+    /// `jacobian`, with the intrinsic roughness `sigma`, seen through the palette's `normal_to_local`.
     ///
     /// What would leave the disk is put back: across a rim that is straight at the lobe's scale, Φ(distance / σ) of the
     /// mass stays inside.
-    pub fn new(mean: Vec2, covariance: Mat2, weight: f32) -> LobeTerm {
-        let determinant = covariance.determinant().max(1e-20);
-        let (xx, xy, yy) = (covariance.x_axis.x, covariance.x_axis.y, covariance.y_axis.y);
-        let radius = mean.length();
-        let outward = if radius > 0.0 { mean / radius } else { Vec2::X };
-        let sigma = outward.dot(covariance * outward).max(1e-20).sqrt();
-        let inside = 0.5 * (1.0 + libm::erff((1.0 - radius) / (sigma * std::f32::consts::SQRT_2)));
-        let peak = weight / (2.0 * std::f32::consts::PI * determinant.sqrt() * inside.max(1e-3));
-        LobeTerm { mean, inverse: [yy / determinant, -xy / determinant, xx / determinant], peak }
+    pub fn new(s: Vec2, jacobian: Mat2, edge: f32, sigma: f32, normal_to_local: Mat2, weight: f32) -> LobeTerm {
+        let (a, b) = (jacobian.x_axis * edge, jacobian.y_axis * edge);
+        let (long, short) = if a.length_squared() >= b.length_squared() { (a, b) } else { (b, a) };
+        let length = long.length();
+        let along = if length > 0.0 { long / length } else { Vec2::X };
+        let height = along.perp_dot(short);
+        // Edges that are nearly parallel have no height to shear over; their spread is the longer edge's.
+        let shear = if height.abs() > 1e-3 * length { along.dot(short) / height } else { 0.0 };
+        let turn = Mat2::from_cols(Vec2::new(along.x, -along.y), Vec2::new(along.y, along.x));
+        let to_unit = turn * normal_to_local * (1.0 / sigma);
+        let radius = s.length();
+        let outward = if radius > 0.0 { s / radius } else { Vec2::X };
+        let spread = (outward.dot(a).powi(2) + outward.dot(b).powi(2)) / 12.0;
+        let inside = normal_cdf((1.0 - radius) / (sigma * sigma + spread).sqrt());
+        LobeTerm {
+            mean: normal_to_local.inverse() * s,
+            to_unit,
+            half: Vec2::new(0.5 * length, 0.5 * height.abs()) / sigma,
+            shear,
+            peak: weight * to_unit.determinant().abs() / inside.max(1e-3),
+        }
     }
+
+    /// Density at `s`.
+    pub fn density(&self, s: Vec2) -> f32 {
+        /// Beyond this many standard deviations the lobe is nothing.
+        const CUT: f32 = 5.0;
+        let x = self.to_unit * (s - self.mean);
+        if x.y.abs() > self.half.y + CUT {
+            return 0.0;
+        }
+        let along = x.x - self.shear * x.y.clamp(-self.half.y, self.half.y);
+        if along.abs() > self.half.x + CUT {
+            return 0.0;
+        }
+        self.peak * smoothed_box(along, self.half.x) * smoothed_box(x.y, self.half.y)
+    }
+}
+
+/// A box of half width `half` and area 1, convolved with the unit Gaussian, at `x`.
+fn smoothed_box(x: f32, half: f32) -> f32 {
+    // Below this width a box is a Gaussian to 1e-4, and the difference of two error functions loses digits.
+    if half < 0.05 {
+        return (-0.5 * x * x).exp() / (2.0 * std::f32::consts::PI).sqrt();
+    }
+    (normal_cdf(x + half) - normal_cdf(x - half)) / (2.0 * half)
+}
+
+/// Φ(x).
+fn normal_cdf(x: f32) -> f32 {
+    0.5 * (1.0 + erf(x * std::f32::consts::FRAC_1_SQRT_2))
+}
+
+/// erf by Abramowitz and Stegun 7.1.26 (absolute error 1.5e-7), one exp, as a shader has it.
+fn erf(x: f32) -> f32 {
+    let t = 1.0 / (1.0 + 0.327_591_1 * x.abs());
+    let poly = t * (0.254_829_6 + t * (-0.284_496_74 + t * (1.421_413_7 + t * (-1.453_152_1 + t * 1.061_405_4))));
+    (1.0 - poly * (-x * x).exp()).copysign(x)
 }

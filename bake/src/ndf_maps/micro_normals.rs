@@ -121,8 +121,7 @@ mod tests {
             total += w;
             mean += s * w;
         });
-        let expected =
-            map.projected.iter().map(|s| DVec2::new(s[0] as f64, s[1] as f64)).sum::<DVec2>() / 20.0;
+        let expected = map.projected.iter().map(|s| DVec2::new(s[0] as f64, s[1] as f64)).sum::<DVec2>() / 20.0;
         assert!((total - 1.0f64).abs() < 1e-12);
         assert!((mean - expected).length() < 1e-9, "{mean} {expected}");
     }

@@ -83,8 +83,8 @@ impl<'a> SurfaceReference<'a> {
             })
             .collect();
         let micro_normals = if minor < 2.0 {
-            let fine = 0.4 * self.roughness / self.steepest.max(1e-9);
-            let pitch = |sigma: f64| (sigma / 8.0).min(fine).max(sigma / 400.0).max(1e-12);
+            let fine = self.roughness / self.steepest.max(1e-9);
+            let pitch = |sigma: f64| (sigma / 4.0).min(fine).max(sigma / 400.0).max(1e-12);
             let mut list = Vec::new();
             self.for_each_point(footprint, axis, [major, minor], [pitch(major), pitch(minor)], |u, weight| {
                 let (class, local) = self.shown_at(u);

@@ -78,12 +78,7 @@ pub fn from_pack(pack: &Pack, name: &str) -> Result<Material> {
             density: bytes(pack, DENSITY, name)?,
             normals: records(pack, NORMALS, name)?,
         },
-        placement: BakedPlacement {
-            params: placement_params,
-            palette: records(pack, PALETTE, name)?,
-            noise,
-            classes,
-        },
+        placement: BakedPlacement { params: placement_params, palette: records(pack, PALETTE, name)?, noise, classes },
     })
 }
 
@@ -93,9 +88,8 @@ pub fn materials(pack: &Pack) -> Vec<&str> {
 }
 
 fn bytes(pack: &Pack, kind: FourCc, name: &str) -> Result<Vec<u8>> {
-    let entry = pack
-        .find(kind, name)
-        .ok_or_else(|| BakeError::BadInput(format!("material '{name}' has no section {kind}")))?;
+    let entry =
+        pack.find(kind, name).ok_or_else(|| BakeError::BadInput(format!("material '{name}' has no section {kind}")))?;
     let payload = pack.payload(entry).map_err(|issue| BakeError::BadInput(issue.to_string()))?;
     Ok(payload.into_owned())
 }

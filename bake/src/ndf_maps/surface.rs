@@ -1,8 +1,8 @@
 //! Which tiles or lobes a footprint sees on a surface covered with examples, with bounded work.
 //!
 //! Xing et al. 2024, section 6.3. Tiles are chosen by the footprint's minor axis; their shares are the Gaussian
-//! footprint at the tile's centre, widened by the tile's own extent, normalised in the end. Below the finest tile the
-//! footprint is split in narrower Gaussians, each seen as one lobe. On a stochastic surface every sub-region is asked
+//! footprint at the tile's centre, widened by the tile's own extent, normalised in the end. Below the finest tile
+//! the example is divided in boxes, each seen as one lobe. On a stochastic surface every sub-region is asked
 //! for its owner; a footprint over many cells sees the top tile under each transform, by the share of cells that use it,
 //! where the paper visits every example.
 
@@ -13,10 +13,12 @@ use glint_formats::ndf_maps::{Level, PlacementKind};
 
 /// Tiles lie within this many standard deviations of the footprint's centre; 0.6 % of its mass is farther out.
 const REACH: f32 = 3.2;
-/// A narrower Gaussian's standard deviation over its distance from the next: their sum ripples by 0.5 %.
-const SPLIT_WIDTH: f32 = 0.55;
-/// Distance of narrower Gaussians at most, in example texels.
-const SPLIT_TEXELS: f32 = 0.5;
+/// Edge of the boxes that are seen as lobes, at most, in example texels: quarter texels lie in one bilinear cell each.
+const LOBE_TEXELS: f32 = 0.5;
+/// Edge of a box seen as a lobe in standard deviations of the footprint's minor axis.
+const LOBE_SIGMAS: f32 = 0.5;
+/// Finest boxes: below this edge positions have no digits left.
+const FINEST_TEXELS: f32 = 1.0 / 4096.0;
 /// Terms of one kind at most, in the area of the footprint's ellipse.
 const MAX_TERMS: f32 = 2048.0;
 /// From this minor axis on (in example edges) shares of tiled examples are even to 1.4 % and the top tile is enough.
@@ -29,11 +31,13 @@ const CLASS_SIGMA_CELLS: f32 = 1.0;
 pub struct EvalSettings {
     /// Largest tile in standard deviations of the footprint's minor axis.
     pub tile_sigmas: f32,
+    /// How often a tile that a sub-region shows only in part is split.
+    pub splits: u32,
 }
 
 impl Default for EvalSettings {
     fn default() -> EvalSettings {
-        EvalSettings { tile_sigmas: 1.0 }
+        EvalSettings { tile_sigmas: 1.0, splits: 1 }
     }
 }
 
@@ -49,12 +53,7 @@ struct Ellipse {
 impl Ellipse {
     fn new(footprint: &Footprint) -> Ellipse {
         let (minor, major, axis) = footprint.principal();
-        Ellipse {
-            mean: footprint.mean.as_vec2(),
-            major_axis: axis.as_vec2(),
-            minor: minor as f32,
-            major: major as f32,
-        }
+        Ellipse { mean: footprint.mean.as_vec2(), major_axis: axis.as_vec2(), minor: minor as f32, major: major as f32 }
     }
 
     /// Widened by a box of edge `edge`.
@@ -99,7 +98,7 @@ impl Ellipse {
 }
 
 /// Calls `visit(i, j)` for the cells of a grid of `edge` whose centres lie in the ellipse and in the box `low … high`.
-fn for_each_cell(ellipse: &Ellipse, edge: f32, low: Vec2, high: Vec2, mut visit: impl FnMut(i32, i32)) {
+fn for_each_cell(ellipse: &Ellipse, edge: f32, (low, high): (Vec2, Vec2), mut visit: impl FnMut(i32, i32)) {
     let index = |x: f32| (x / edge - 0.5).ceil() as i32;
     let reach = ellipse.reach_y();
     for j in index((ellipse.mean.y - reach).max(low.y))..index((ellipse.mean.y + reach).min(high.y)) {
@@ -114,156 +113,184 @@ fn for_each_cell(ellipse: &Ellipse, edge: f32, low: Vec2, high: Vec2, mut visit:
 
 const EVERYWHERE: (Vec2, Vec2) = (Vec2::NEG_INFINITY, Vec2::INFINITY);
 
+/// What a footprint is resolved in.
+#[derive(Clone, Copy, Debug)]
+enum Detail {
+    /// Tiles of a level.
+    Tiles(Level),
+    /// Boxes of this edge in example texels, each one lobe.
+    Boxes(f32),
+}
+
+/// Terms with the sum of their shares.
+#[derive(Default)]
+struct Gathered {
+    terms: Terms,
+    share: f32,
+}
+
 impl Material {
     /// The terms of a footprint (surface texels). Shares sum to 1; a footprint of zero size is a point.
     pub fn gather(&self, footprint: &Footprint, settings: EvalSettings) -> Terms {
-        let mut terms = Terms::default();
+        let mut gathered = Gathered::default();
         match self.placement.params.kind {
-            PlacementKind::Tiled => self.gather_tiled(footprint, settings, &mut terms),
+            PlacementKind::Tiled => self.gather_tiled(footprint, settings, &mut gathered),
             PlacementKind::Stochastic { cells_x, cell_texels, .. } => {
                 let cells = Cells { count: cells_x as i32, edge: cell_texels };
-                self.gather_stochastic(footprint, cells, settings, &mut terms);
+                self.gather_stochastic(footprint, cells, settings, &mut gathered);
             }
         }
-        normalise(&mut terms);
+        let Gathered { mut terms, share } = gathered;
+        for term in &mut terms.tiles {
+            let to_local = matrix(self.placement.palette[term.class as usize].normal_to_local);
+            term.weight *= to_local.determinant().abs() / share;
+        }
+        for lobe in &mut terms.lobes {
+            lobe.peak /= share;
+        }
         terms
     }
 
-    fn gather_tiled(&self, footprint: &Footprint, settings: EvalSettings, terms: &mut Terms) {
+    fn gather_tiled(&self, footprint: &Footprint, settings: EvalSettings, gathered: &mut Gathered) {
         let to_local = self.position_to_local(0);
         let local = reduced(&footprint.transformed(to_local.as_dmat2(), DVec2::ZERO), self.example_size());
         let ellipse = Ellipse::new(&local);
-        match self.level_for(&ellipse, settings, f32::INFINITY) {
-            Some(level) if level.tiles_x * level.tiles_y == 1 => {
-                terms.tiles.push(TileTerm { tile: level.first_tile, class: 0, weight: 1.0 });
+        let size = self.example_size().max_element() as f32;
+        if ellipse.minor >= TOP_TILE_SIGMA * size {
+            return gathered.add_tile(TileTerm { tile: self.top_tile(), class: 0, weight: 1.0 });
+        }
+        match self.detail_for(&ellipse, settings) {
+            Detail::Tiles(level) => {
+                for_each_tile(&ellipse.widened(level.tile_texels as f32), &level, self.size(), EVERYWHERE, |slot| {
+                    let weight = slot.area() * ellipse.widened(slot.size.x.max(slot.size.y)).density(slot.centre);
+                    gathered.add_tile(TileTerm { tile: slot.tile, class: 0, weight });
+                });
             }
-            Some(level) => self.gather_tiles(&ellipse, &level, 0, EVERYWHERE, |_| 1.0, terms),
-            None => self.gather_lobes(footprint, |_| (0, Vec2::ZERO, Vec2::ZERO), terms),
+            Detail::Boxes(edge) => {
+                let widened = ellipse.widened(edge);
+                for_each_cell(&widened, edge, EVERYWHERE, |i, j| {
+                    let centre = Vec2::new(i as f32 + 0.5, j as f32 + 0.5) * edge;
+                    self.add_lobe(centre, edge, 0, edge * edge * widened.density(centre), gathered);
+                });
+                if gathered.share <= 0.0 {
+                    self.add_lobe(ellipse.mean, 0.0, 0, 1.0, gathered);
+                }
+            }
         }
     }
 
-    /// The coarsest level that resolves the footprint, None when lobes are needed; tiles are at most `max_edge`.
-    fn level_for(&self, ellipse: &Ellipse, settings: EvalSettings, max_edge: f32) -> Option<Level> {
-        let levels = &self.maps.params.levels;
-        let size = self.example_size().max_element() as f32;
-        if ellipse.minor >= TOP_TILE_SIGMA * size && max_edge >= size {
-            return levels.last().copied();
-        }
-        let wanted = (settings.tile_sigmas * ellipse.minor).min(max_edge);
-        // Long thin footprints take coarser tiles rather than more than MAX_TERMS of them.
-        let least = 2.0 * REACH * (ellipse.minor.max(1e-3) * ellipse.major / MAX_TERMS).sqrt();
-        let too_many_lobes = ellipse.major * ellipse.minor.max(SPLIT_TEXELS) > MAX_TERMS / 160.0;
+    /// The coarsest tiles or boxes that resolve a footprint in the example.
+    fn detail_for(&self, ellipse: &Ellipse, settings: EvalSettings) -> Detail {
+        // Long thin footprints take coarser pieces rather than more than MAX_TERMS of them.
+        let least = 2.0 * REACH * (ellipse.minor.max(FINEST_TEXELS) * ellipse.major / MAX_TERMS).sqrt();
         let mut chosen = None;
-        for level in levels {
+        for level in &self.maps.params.levels {
             let edge = level.tile_texels as f32;
-            if edge <= wanted || edge <= least || (chosen.is_none() && too_many_lobes) {
+            let finer_is_enough = match chosen {
+                None => LOBE_TEXELS >= least,
+                Some(Level { tile_texels, .. }) => tile_texels as f32 >= least,
+            };
+            if edge <= settings.tile_sigmas * ellipse.minor || !finer_is_enough {
                 chosen = Some(*level);
             }
         }
-        chosen
-    }
-
-    /// Adds the tiles of `level` (example texels) with shares times `visible(centre)`.
-    fn gather_tiles(
-        &self,
-        ellipse: &Ellipse,
-        level: &Level,
-        class: u32,
-        (low, high): (Vec2, Vec2),
-        visible: impl Fn(Vec2) -> f32,
-        terms: &mut Terms,
-    ) {
-        let edge = level.tile_texels as f32;
-        let size = self.example_size();
-        let (cut_x, cut_y) = (size.x as u32 % level.tile_texels, size.y as u32 % level.tile_texels);
-        let widened = ellipse.widened(edge);
-        let whole = cut_x == 0 && cut_y == 0;
-        // Tiles of a cut level do not lie on one grid over the repeating example; walk their slots, of which the last
-        // in a row is narrower.
-        for_each_slot(&widened, level, size.as_vec2(), whole, low, high, |tile, centre, area| {
-            let share = area * widened.density(centre) * visible(centre);
-            if share > 0.0 {
-                terms.tiles.push(TileTerm { tile, class, weight: share });
-            }
-        });
-    }
-
-    /// Splits the footprint in narrower Gaussians and adds one lobe each. `owner(x)` gives, for a surface position, the
-    /// palette entry, the example's centre on the surface and the example point that lies there.
-    fn gather_lobes(&self, footprint: &Footprint, owner: impl Fn(Vec2) -> (u32, Vec2, Vec2), terms: &mut Terms) {
-        let ellipse = Ellipse::new(footprint);
-        let texel = self.smallest_texel();
-        let (major, minor) = (Split::new(ellipse.major, texel), Split::new(ellipse.minor, texel));
-        let minor_axis = -ellipse.major_axis.perp();
-        let narrow = outer(ellipse.major_axis) * (major.width * major.width)
-            + outer(minor_axis) * (minor.width * minor.width);
-        let roughness = self.maps.params.intrinsic_roughness;
-        let total = major.total() * minor.total();
-        for b in -minor.count..=minor.count {
-            for a in -major.count..=major.count {
-                let (x, y) = (a as f32 * major.step, b as f32 * minor.step);
-                let weight = major.share(x) * minor.share(y) / total;
-                if weight * total < 1e-4 {
-                    continue;
-                }
-                let at = ellipse.mean + ellipse.major_axis * x + minor_axis * y;
-                let (class, centre, offset) = owner(at);
-                let to_local = self.position_to_local(class);
-                let to_surface = matrix(self.placement.palette[class as usize].normal_to_local).inverse();
-                let (s, jacobian) = self.maps.normal_and_jacobian(to_local * (at - centre) + offset);
-                let j = to_surface * jacobian * to_local;
-                let covariance = j * narrow * j.transpose()
-                    + to_surface * to_surface.transpose() * (roughness * roughness);
-                terms.lobes.push(LobeTerm::new(to_surface * s, covariance, weight));
-            }
+        if let Some(level) = chosen {
+            return Detail::Tiles(level);
         }
+        let mut edge = LOBE_TEXELS;
+        while edge > FINEST_TEXELS && edge > LOBE_SIGMAS * ellipse.minor && 0.5 * edge >= least {
+            edge *= 0.5;
+        }
+        Detail::Boxes(edge)
     }
 
-    fn gather_stochastic(&self, footprint: &Footprint, cells: Cells, settings: EvalSettings, terms: &mut Terms) {
-        let period = DVec2::splat(cells.count as f64 * cells.edge as f64);
-        let footprint = reduced(footprint, period);
+    /// Adds the box of `edge` around the example point `centre`.
+    fn add_lobe(&self, centre: Vec2, edge: f32, class: u32, weight: f32, gathered: &mut Gathered) {
+        let (s, jacobian) = self.maps.normal_and_jacobian(centre);
+        let sigma = self.maps.params.intrinsic_roughness;
+        let to_local = matrix(self.placement.palette[class as usize].normal_to_local);
+        gathered.terms.lobes.push(LobeTerm::new(s, jacobian, edge, sigma, to_local, weight));
+        gathered.share += weight;
+    }
+
+    fn gather_stochastic(&self, footprint: &Footprint, cells: Cells, settings: EvalSettings, gathered: &mut Gathered) {
+        let footprint = reduced(footprint, DVec2::splat(cells.count as f64 * cells.edge as f64));
         let ellipse = Ellipse::new(&footprint);
         let region = 0.5 * cells.edge;
         let regions = (2.0 * REACH).powi(2) * ellipse.major * ellipse.minor.max(region) / (region * region);
         if ellipse.minor >= CLASS_SIGMA_CELLS * cells.edge || regions > MAX_TERMS {
-            return self.gather_classes(&ellipse, cells, terms);
+            return self.gather_classes(&ellipse, cells, gathered);
         }
-        let in_texels = Ellipse {
-            minor: ellipse.minor / self.smallest_texel(),
-            major: ellipse.major / self.smallest_texel(),
-            ..ellipse
-        };
-        let Some(level) = self.level_for(&in_texels, settings, region / self.smallest_texel()) else {
-            return self.gather_lobes(&footprint, |at| self.owner_at(at, cells), terms);
-        };
         // A sub-region counts when its centre is near the footprint, widened by the sub-region's diagonal.
-        let near = ellipse.widened(region * 1.5);
-        for_each_cell(&near, region, EVERYWHERE.0, EVERYWHERE.1, |i, j| {
-            self.gather_region(&footprint, &level, cells, (i, j), terms);
+        for_each_cell(&ellipse.widened(region * 1.5), region, EVERYWHERE, |i, j| {
+            self.gather_region(&footprint, cells, (i, j), settings, gathered);
         });
+        if gathered.share <= 0.0 {
+            let (class, centre, offset) = self.owner_at(ellipse.mean, cells);
+            let local = self.position_to_local(class) * (ellipse.mean - centre) + offset;
+            self.add_lobe(local, 0.0, class, 1.0, gathered);
+        }
     }
 
-    /// Tiles that sub-region (i, j) shows of its owner.
-    fn gather_region(&self, footprint: &Footprint, level: &Level, cells: Cells, at: (i32, i32), terms: &mut Terms) {
+    /// What sub-region (i, j) shows of its owner under the footprint.
+    fn gather_region(
+        &self,
+        footprint: &Footprint,
+        cells: Cells,
+        at: (i32, i32),
+        settings: EvalSettings,
+        gathered: &mut Gathered,
+    ) {
         let region = 0.5 * cells.edge;
         let middle = Vec2::new(at.0 as f32 + 0.5, at.1 as f32 + 0.5) * region;
         let (class, centre, offset) = self.owner_at(middle, cells);
         let to_local = self.position_to_local(class);
         let shift = offset - to_local * centre;
-        let ellipse = Ellipse::new(&footprint.transformed(to_local.as_dmat2(), shift.as_dvec2()));
-        let to_surface = to_local.inverse();
-        let edge = level.tile_texels as f32 * to_surface.determinant().abs().sqrt();
-        let extent = (to_local.x_axis.abs() + to_local.y_axis.abs()) * (0.5 * (region + edge));
-        let local_middle = to_local * middle + shift;
-        // How much of a tile lies in the sub-region, as if the tile were a box along the surface's axes.
-        let visible = |x: Vec2| {
-            let d = (to_surface * (x - local_middle)).abs();
-            let inside = (Vec2::splat(0.5 * (region + edge)) - d) / edge;
-            let inside = inside.clamp(Vec2::ZERO, Vec2::ONE);
-            inside.x * inside.y
+        let view = RegionView {
+            ellipse: Ellipse::new(&footprint.transformed(to_local.as_dmat2(), shift.as_dvec2())),
+            middle: to_local * middle + shift,
+            to_surface: to_local.inverse(),
+            half: 0.5 * region,
+            extent: to_local.x_axis.abs() + to_local.y_axis.abs(),
+            class,
         };
-        let span = (local_middle - extent, local_middle + extent);
-        self.gather_tiles(&ellipse, level, class, span, visible, terms);
+        match self.detail_for(&view.ellipse, settings) {
+            Detail::Tiles(level) => {
+                let widened = view.ellipse.widened(level.tile_texels as f32);
+                for_each_tile(&widened, &level, self.size(), view.span(level.tile_texels as f32), |slot| {
+                    self.add_visible(&view, &level, slot, settings.splits, gathered);
+                });
+            }
+            Detail::Boxes(edge) => {
+                let widened = view.ellipse.widened(edge);
+                for_each_cell(&widened, edge, view.span(edge), |i, j| {
+                    let centre = Vec2::new(i as f32 + 0.5, j as f32 + 0.5) * edge;
+                    let weight = edge * edge * widened.density(centre) * view.visible(centre, edge);
+                    if weight > 0.0 {
+                        self.add_lobe(centre, edge, view.class, weight, gathered);
+                    }
+                });
+            }
+        }
+    }
+
+    /// Adds a tile by how much of it the sub-region shows; one that is cut is split in its four children first, as often
+    /// as `splits` allows.
+    fn add_visible(&self, view: &RegionView, level: &Level, slot: Slot, splits: u32, gathered: &mut Gathered) {
+        let edge = slot.size.x.max(slot.size.y);
+        let visible = view.visible(slot.centre, edge);
+        if visible <= 0.0 {
+            return;
+        }
+        let index = self.maps.params.levels.iter().position(|l| l.first_tile == level.first_tile).unwrap_or(0);
+        if visible >= 1.0 || splits == 0 || index == 0 {
+            let weight = slot.area() * view.ellipse.widened(edge).density(slot.centre) * visible;
+            return gathered.add_tile(TileTerm { tile: slot.tile, class: view.class, weight });
+        }
+        let finer = self.maps.params.levels[index - 1];
+        for child in slot.children(level, &finer) {
+            self.add_visible(view, &finer, child, splits - 1, gathered);
+        }
     }
 
     /// Owner of surface position `at`: palette entry, centre on the surface, example point that lies at the centre.
@@ -281,7 +308,7 @@ impl Material {
     }
 
     /// The top tile under every transform, by the share of cells that use it.
-    fn gather_classes(&self, ellipse: &Ellipse, cells: Cells, terms: &mut Terms) {
+    fn gather_classes(&self, ellipse: &Ellipse, cells: Cells, gathered: &mut Gathered) {
         let least = 2.0 * REACH * (ellipse.minor * ellipse.major / MAX_TERMS).sqrt();
         let mut mip = 0;
         while 1 << mip < cells.count && cells.edge * (2 << mip) as f32 <= ellipse.minor.max(least) {
@@ -294,15 +321,14 @@ impl Material {
         if 1 << mip == cells.count {
             self.add_shares(mip, 0, 0, 1.0, cells, &mut shares);
         } else {
-            for_each_cell(&widened, block, EVERYWHERE.0, EVERYWHERE.1, |i, j| {
+            for_each_cell(&widened, block, EVERYWHERE, |i, j| {
                 let centre = Vec2::new(i as f32 + 0.5, j as f32 + 0.5) * block;
                 self.add_shares(mip, i, j, widened.density(centre) * block * block, cells, &mut shares);
             });
         }
-        let top = self.maps.params.levels.last().map_or(0, |level| level.first_tile);
         for (class, weight) in shares.into_iter().enumerate() {
             if weight > 0.0 {
-                terms.tiles.push(TileTerm { tile: top, class: class as u32, weight });
+                gathered.add_tile(TileTerm { tile: self.top_tile(), class: class as u32, weight });
             }
         }
     }
@@ -327,14 +353,49 @@ impl Material {
         DVec2::new(self.maps.params.width as f64, self.maps.params.height as f64)
     }
 
-    /// Edge of the smallest example texel on the surface, in surface texels.
-    fn smallest_texel(&self) -> f32 {
-        let mut stretch = 0.0f32;
-        for record in &self.placement.palette {
-            let m = matrix(record.position_to_local);
-            stretch = stretch.max(m.x_axis.length()).max(m.y_axis.length());
-        }
-        1.0 / stretch.max(1e-6)
+    fn size(&self) -> Vec2 {
+        self.example_size().as_vec2()
+    }
+
+    fn top_tile(&self) -> u32 {
+        self.maps.params.levels.last().map_or(0, |level| level.first_tile)
+    }
+}
+
+impl Gathered {
+    fn add_tile(&mut self, term: TileTerm) {
+        self.share += term.weight;
+        self.terms.tiles.push(term);
+    }
+}
+
+/// A sub-region as the example that shows in it sees it.
+struct RegionView {
+    /// The footprint in example texels.
+    ellipse: Ellipse,
+    /// The sub-region's middle in example texels.
+    middle: Vec2,
+    to_surface: Mat2,
+    /// Half the sub-region's edge in surface texels.
+    half: f32,
+    /// Half the box, in example texels, around a sub-region of half edge 1.
+    extent: Vec2,
+    class: u32,
+}
+
+impl RegionView {
+    /// How much of a piece of `edge` around `x` lies in the sub-region, as if it were a box along the surface's axes.
+    fn visible(&self, x: Vec2, edge: f32) -> f32 {
+        let edge = edge * self.to_surface.determinant().abs().sqrt();
+        let d = (self.to_surface * (x - self.middle)).abs();
+        let inside = ((Vec2::splat(self.half + 0.5 * edge) - d) / edge).clamp(Vec2::ZERO, Vec2::ONE);
+        inside.x * inside.y
+    }
+
+    /// Box in example texels that holds the centres of all pieces of `edge` that the sub-region may show.
+    fn span(&self, edge: f32) -> (Vec2, Vec2) {
+        let reach = self.extent * self.half + edge;
+        (self.middle - reach, self.middle + reach)
     }
 }
 
@@ -351,92 +412,73 @@ impl Cells {
     }
 }
 
-/// Narrower Gaussians that sum to one of standard deviation `sigma`: `2 count + 1` of them, `step` apart.
-struct Split {
-    count: i32,
-    step: f32,
-    width: f32,
-    spread: f32,
-}
-
-impl Split {
-    fn new(sigma: f32, texel: f32) -> Split {
-        let step = SPLIT_TEXELS * texel;
-        let width = SPLIT_WIDTH * step;
-        if sigma <= width {
-            return Split { count: 0, step: 0.0, width: sigma, spread: 1.0 };
-        }
-        let spread = (sigma * sigma - width * width).sqrt();
-        Split { count: (REACH * spread / step).ceil() as i32, step, width, spread }
-    }
-
-    /// Share of the Gaussian at distance x, relative to the middle one's.
-    fn share(&self, x: f32) -> f32 {
-        (-0.5 * (x / self.spread).powi(2)).exp()
-    }
-
-    fn total(&self) -> f32 {
-        (-self.count..=self.count).map(|k| self.share(k as f32 * self.step)).sum()
-    }
-}
-
-fn outer(v: Vec2) -> Mat2 {
-    Mat2::from_cols(v * v.x, v * v.y)
-}
-
 /// The footprint moved by whole periods so that its centre lies in the first one.
 fn reduced(footprint: &Footprint, period: DVec2) -> Footprint {
     let mean = footprint.mean - (footprint.mean / period).floor() * period;
     Footprint { mean, covariance: footprint.covariance }
 }
 
-/// Calls `visit(tile, centre, area)` for a level's tiles over the repeating example, within the ellipse and the box.
-fn for_each_slot(
-    ellipse: &Ellipse,
-    level: &Level,
+/// A tile where it lies on the repeating example, in example texels.
+#[derive(Clone, Copy, Debug)]
+struct Slot {
+    tile: u32,
+    /// Column and row of the tile in its level.
+    index: [u32; 2],
+    centre: Vec2,
     size: Vec2,
-    whole: bool,
-    low: Vec2,
-    high: Vec2,
-    mut visit: impl FnMut(u32, Vec2, f32),
-) {
-    let edge = level.tile_texels as f32;
-    let (nx, ny) = (level.tiles_x as i32, level.tiles_y as i32);
-    let tile = |i: i32, j: i32| level.first_tile + (j.rem_euclid(ny) * nx + i.rem_euclid(nx)) as u32;
-    if whole {
-        for_each_cell(ellipse, edge, low, high, |i, j| {
-            visit(tile(i, j), Vec2::new(i as f32 + 0.5, j as f32 + 0.5) * edge, edge * edge);
-        });
-        return;
+}
+
+impl Slot {
+    fn area(&self) -> f32 {
+        self.size.x * self.size.y
     }
-    // Slot k of an axis: whole periods, then tiles of `edge`, the last one cut at the example's end.
-    let slot = |k: i32, n: i32, length: f32| {
-        let start = k.div_euclid(n) as f32 * length + k.rem_euclid(n) as f32 * edge;
-        let end = (start + edge).min((k.div_euclid(n) + 1) as f32 * length);
-        (0.5 * (start + end), end - start)
-    };
-    let first = |x: f32, n: i32, length: f32| {
-        let period = (x / length).floor();
-        period as i32 * n + ((x - period * length) / edge) as i32
-    };
-    let reach = ellipse.reach_y();
-    let (y0, y1) = ((ellipse.mean.y - reach).max(low.y), (ellipse.mean.y + reach).min(high.y));
-    for j in first(y0, ny, size.y)..=first(y1, ny, size.y) {
-        let (y, tall) = slot(j, ny, size.y);
-        let Some((x0, x1)) = ellipse.span_x(y) else { continue };
-        for i in first(x0.max(low.x), nx, size.x)..=first(x1.min(high.x), nx, size.x) {
-            let (x, wide) = slot(i, nx, size.x);
-            visit(tile(i, j), Vec2::new(x, y), wide * tall);
-        }
+
+    /// The tiles of the next finer level that this tile of `level` is made of.
+    fn children(&self, level: &Level, finer: &Level) -> impl Iterator<Item = Slot> {
+        let low = self.centre - 0.5 * self.size;
+        let edge = Vec2::splat(0.5 * level.tile_texels as f32);
+        let (finer, index, size) = (*finer, self.index, self.size);
+        (0..4u32).filter_map(move |k| {
+            let at = Vec2::new((k % 2) as f32, (k / 2) as f32) * edge;
+            let child = (size - at).min(edge);
+            let (x, y) = (2 * index[0] + k % 2, 2 * index[1] + k / 2);
+            (child.min_element() > 0.0).then(|| Slot {
+                tile: finer.first_tile + y * finer.tiles_x + x,
+                index: [x, y],
+                centre: low + at + 0.5 * child,
+                size: child,
+            })
+        })
     }
 }
 
-fn normalise(terms: &mut Terms) {
-    // A footprint has tiles or lobes, never both; lobes are normalised where they are made.
-    let total: f32 = terms.tiles.iter().map(|t| t.weight).sum();
-    if total > 0.0 {
-        for term in &mut terms.tiles {
-            term.weight /= total;
+/// Calls `visit` for a level's tiles over the repeating example of `size`, within the ellipse and the box. Slot k of an
+/// axis lies in period k div tiles; the last tile of a period may be cut.
+fn for_each_tile(ellipse: &Ellipse, level: &Level, size: Vec2, (low, high): (Vec2, Vec2), mut visit: impl FnMut(Slot)) {
+    let edge = level.tile_texels as f32;
+    let slot = |k: i32, n: u32, length: f32| {
+        let start = k.div_euclid(n as i32) as f32 * length + k.rem_euclid(n as i32) as f32 * edge;
+        let end = (start + edge).min((k.div_euclid(n as i32) + 1) as f32 * length);
+        (0.5 * (start + end), end - start)
+    };
+    let first = |x: f32, n: u32, length: f32| {
+        let period = (x / length).floor();
+        period as i32 * n as i32 + (((x - period * length) / edge) as i32).min(n as i32 - 1)
+    };
+    let reach = ellipse.reach_y();
+    let (y0, y1) = ((ellipse.mean.y - reach).max(low.y), (ellipse.mean.y + reach).min(high.y));
+    for j in first(y0, level.tiles_y, size.y)..=first(y1, level.tiles_y, size.y) {
+        let (y, tall) = slot(j, level.tiles_y, size.y);
+        let Some((x0, x1)) = ellipse.span_x(y) else { continue };
+        for i in first(x0.max(low.x), level.tiles_x, size.x)..=first(x1.min(high.x), level.tiles_x, size.x) {
+            let (x, wide) = slot(i, level.tiles_x, size.x);
+            let index = [i.rem_euclid(level.tiles_x as i32) as u32, j.rem_euclid(level.tiles_y as i32) as u32];
+            visit(Slot {
+                tile: level.first_tile + index[1] * level.tiles_x + index[0],
+                index,
+                centre: Vec2::new(x, y),
+                size: Vec2::new(wide, tall),
+            });
         }
     }
 }

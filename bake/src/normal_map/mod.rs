@@ -12,6 +12,9 @@ mod raw;
 mod report;
 mod validate;
 
+#[cfg(test)]
+mod tests;
+
 pub use raw::{GreenAxis, NormalOptions, RawNormals};
 pub use report::{NormalReport, SEAM_RATIO, SeamRatio};
 pub use validate::{HORIZON, MAX_BELOW_HORIZON, MAX_ZERO_LENGTH, ZERO_LENGTH};

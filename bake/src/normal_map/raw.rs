@@ -59,13 +59,7 @@ impl RawNormals {
     /// # Errors
     /// `BadInput` when `heights` has not `width · height` entries, the map is empty, or a height is NaN or infinite
     /// (named); `BadOption` when the scale is not finite or is 0.
-    pub fn from_heights(
-        width: u32,
-        height: u32,
-        heights: &[f32],
-        scale_texels: f32,
-        wrap: Wrap,
-    ) -> Result<RawNormals> {
+    pub fn from_heights(width: u32, height: u32, heights: &[f32], scale_texels: f32, wrap: Wrap) -> Result<RawNormals> {
         check_count(width, height, heights.len())?;
         if !scale_texels.is_finite() || scale_texels == 0.0 {
             return Err(BakeError::BadOption(format!(

@@ -1,0 +1,27 @@
+# The habits of this repository. Everything also works without just; see the README.
+
+# List the recipes.
+default:
+    @just --list
+
+# Install the tools that are nice to have.
+setup:
+    rustup component add rustfmt clippy
+    cargo install cargo-deny --locked
+
+# Everything a change must pass.
+test:
+    scripts/test.sh
+
+# Format, then lint.
+lint:
+    cargo fmt --all
+    cargo clippy --workspace --all-targets -- -D warnings
+
+# Bake the built-in example and paint a picture of it.
+demo *ARGS:
+    cargo run --release --bin glint-bake -- demo {{ARGS}}
+
+# Feed the pack reader with arbitrary bytes (needs nightly Rust and cargo-fuzz).
+fuzz TARGET="read_pack" SECONDS="60":
+    cargo +nightly fuzz run {{TARGET}} -- -max_total_time={{SECONDS}}

@@ -1,0 +1,134 @@
+//! Flags that every program has, and how messages look on a terminal.
+
+use clap::{Args, ValueEnum};
+use std::io::{IsTerminal, Write, stderr};
+use std::sync::OnceLock;
+
+/// When progress is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ProgressWhen {
+    /// On a terminal.
+    Auto,
+    /// Never.
+    Never,
+    /// Even into a file or a pipe.
+    Always,
+}
+
+/// When messages have colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Colour {
+    /// On a terminal, unless NO_COLOR is set.
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    Never,
+}
+
+/// Flags that every program has.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Common options")]
+pub struct Common {
+    /// Say nothing but errors
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Say more
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+    /// When to show progress bars on standard error
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto", hide_possible_values = true)]
+    #[arg(help = "When to show progress on standard error: auto, never, always")]
+    pub progress: ProgressWhen,
+    /// When to colour messages
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto", hide_possible_values = true)]
+    #[arg(help = "When to colour messages: auto, always, never (auto obeys NO_COLOR)")]
+    pub color: Colour,
+}
+
+/// What the user wants of standard error.
+#[derive(Clone, Copy, Debug)]
+pub struct Terminal {
+    quiet: bool,
+    verbose: bool,
+    colour: bool,
+    progress: bool,
+}
+
+/// The terminal of this process once its flags are known, for messages after the program has returned.
+static PROCESS: OnceLock<Terminal> = OnceLock::new();
+
+impl Terminal {
+    /// As the flags and the environment ask.
+    pub fn new(common: &Common) -> Terminal {
+        let is_terminal = stderr().is_terminal();
+        let plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+        let colour = match common.color {
+            Colour::Auto => is_terminal && !plain,
+            Colour::Always => true,
+            Colour::Never => false,
+        };
+        let progress = match common.progress {
+            ProgressWhen::Auto => is_terminal && !common.quiet,
+            ProgressWhen::Never => false,
+            ProgressWhen::Always => true,
+        };
+        let terminal = Terminal { quiet: common.quiet, verbose: common.verbose, colour, progress };
+        *PROCESS.get_or_init(|| terminal)
+    }
+
+    /// The one made from this process's flags; plain before they are known.
+    pub fn from_process() -> Terminal {
+        let plain = Terminal { quiet: false, verbose: false, colour: false, progress: false };
+        PROCESS.get().copied().unwrap_or(plain)
+    }
+
+    /// Whether progress is shown.
+    pub fn progress(&self) -> bool {
+        self.progress
+    }
+
+    /// Whether nothing but errors is wanted.
+    pub fn is_quiet(&self) -> bool {
+        self.quiet
+    }
+
+    /// Why the program stops.
+    pub fn error(&self, message: &str) {
+        self.labelled("error", "31", message);
+    }
+
+    /// Something the user should know.
+    pub fn warn(&self, message: &str) {
+        if !self.quiet {
+            self.labelled("warning", "33", message);
+        }
+    }
+
+    /// What was done.
+    pub fn say(&self, message: &str) {
+        if !self.quiet {
+            write_line(message);
+        }
+    }
+
+    /// What only `--verbose` shows.
+    pub fn detail(&self, message: &str) {
+        if self.verbose {
+            write_line(message);
+        }
+    }
+
+    fn labelled(&self, label: &str, ansi: &str, message: &str) {
+        if self.colour {
+            write_line(&format!("\x1b[1;{ansi}m{label}:\x1b[0m {message}"));
+        } else {
+            write_line(&format!("{label}: {message}"));
+        }
+    }
+}
+
+/// A message that nobody can read is not worth a failure.
+fn write_line(message: &str) {
+    let _ = writeln!(stderr(), "{message}");
+}

@@ -1,0 +1,193 @@
+//! Flags of `glint-bake ndf-maps`.
+
+use crate::cli::values;
+use crate::input::Crop;
+use clap::ValueEnum;
+use glint_bake_core::ndf_maps::transform::TransformRanges;
+use glint_formats::ndf_maps::DensityStorage;
+use std::path::PathBuf;
+
+/// Bake multi-scale NDF maps of small normal maps
+///
+/// Each MAP becomes one material of the pack. Maps are small examples (up to 128 x 128 texels, or --crop of larger
+/// ones) that the placement repeats over a surface of any size.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Args {
+    /// Normal maps: PNG, TGA, JPEG, TIFF, WebP or EXR
+    #[arg(required = true, value_name = "MAP")]
+    pub maps: Vec<PathBuf>,
+    /// Pack to write
+    #[arg(short, long, value_name = "PACK")]
+    pub output: PathBuf,
+    /// Name of a material, once a map in the same order [default: the file's name]
+    #[arg(long, value_name = "NAME")]
+    pub name: Vec<String>,
+
+    /// Intrinsic roughness: standard deviation of each normal's lobe in the projected-normal disk, 0.0001 to 1
+    #[arg(long, value_name = "SIGMA", default_value = "0.02", value_parser = values::positive, help_heading = "Bake")]
+    pub roughness: f64,
+    /// Values for --max-error and --storage at once; either flag wins over it
+    #[arg(long, value_name = "PRESET", default_value = "balanced", help_heading = "Bake")]
+    pub preset: Preset,
+    /// Error E1 asked of tiles on average, three times that of each; given, missing it fails the bake
+    /// [default: by preset]
+    #[arg(long, value_name = "E1", value_parser = values::positive, help_heading = "Bake")]
+    pub max_error: Option<f64>,
+    /// How densities are stored; paper is 128 x 128 floats a tile [default: by preset]
+    #[arg(long, value_name = "STORAGE", help_heading = "Bake")]
+    pub storage: Option<Storage>,
+    /// Compress the pack's sections with Zstandard
+    #[arg(long, help_heading = "Bake")]
+    pub compress: bool,
+
+    /// Use only this part of each map
+    #[arg(long, value_name = "WxH+X+Y", value_parser = values::crop, help_heading = "Input")]
+    pub crop: Option<Crop>,
+    /// Which way green points: up (OpenGL) or down (DirectX)
+    #[arg(long, value_name = "AXIS", default_value = "up", help_heading = "Input")]
+    pub normal_y: NormalY,
+    /// What lies beyond a map's edge
+    #[arg(long, value_name = "WRAP", default_value = "repeat", help_heading = "Input")]
+    pub wrap: WrapArg,
+    /// Channels that hold the normal; xy computes z
+    #[arg(long, value_name = "CHANNELS", default_value = "xyz", help_heading = "Input")]
+    pub channels: ChannelsArg,
+    /// Read height maps; SCALE is the height of white in texels
+    #[arg(long, value_name = "SCALE", value_parser = values::non_zero, allow_negative_numbers = true, help_heading = "Input")]
+    pub height: Option<f32>,
+    /// Take the values of files tagged as sRGB as they are
+    #[arg(long, help_heading = "Input")]
+    pub assume_linear: bool,
+
+    /// How a surface is covered: copies side by side, or placed at random
+    #[arg(long, value_name = "KIND", default_value = "tiled", help_heading = "Placement")]
+    pub placement: PlacementArg,
+    /// Transforms of placed copies: rotate=A..B (degrees), mirror, scale=A..B, stretch=A..B, shear=A..B, or none
+    /// [default: none when tiled, rotate=0..360,mirror when stochastic]
+    #[arg(long, value_name = "LIST", value_parser = values::transforms, help_heading = "Placement")]
+    pub transforms: Option<TransformRanges>,
+    /// Different transforms of a stochastic placement, 1 to 32
+    #[arg(long, value_name = "N", default_value = "16", value_parser = clap::value_parser!(u32).range(1..=32))]
+    #[arg(help_heading = "Placement")]
+    pub palette: u32,
+    /// Cells along both axes before a stochastic placement repeats, a power of two from 2 to 1024
+    #[arg(long, value_name = "N", default_value = "32", value_parser = power_of_two, help_heading = "Placement")]
+    pub cells: u32,
+    /// Edge of a cell relative to the map's longer edge, 0.25 to 8
+    #[arg(long, value_name = "EDGES", default_value = "1.0", value_parser = values::positive, help_heading = "Placement")]
+    pub spacing: f64,
+    /// Seed of everything random
+    #[arg(long, value_name = "SEED", default_value = "1", help_heading = "Placement")]
+    pub seed: u64,
+
+    /// Make a two-layer material of two materials of this pack
+    #[arg(long, value_name = "COAT:BASE", help_heading = "Layers")]
+    pub layers: Option<String>,
+    /// Reflectance of the coat at normal incidence
+    #[arg(long, value_name = "F0", default_value = "0.04", value_parser = values::reflectance, help_heading = "Layers")]
+    pub coat_f0: f32,
+    /// Reflectance of the base at normal incidence, linear
+    #[arg(long, value_name = "R,G,B", default_value = "0.5,0.5,0.5", value_parser = values::reflectance3)]
+    #[arg(help_heading = "Layers")]
+    pub base_f0: [f32; 3],
+
+    /// Threads to use [default: one a core]
+    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    #[arg(help_heading = "Run")]
+    pub threads: Option<u32>,
+    /// Most bytes to hold for one map, or for the finished pack, as in 512M
+    #[arg(long, value_name = "BYTES", default_value = "4G", value_parser = values::bytes, help_heading = "Run")]
+    pub max_memory: u64,
+    /// Write what glint-info --json prints about the pack
+    #[arg(long, value_name = "FILE", help_heading = "Run")]
+    pub report: Option<PathBuf>,
+    /// Write the inputs the pack depends on, in Make's syntax
+    #[arg(long, value_name = "FILE", help_heading = "Run")]
+    pub depfile: Option<PathBuf>,
+    /// Check everything, say what would be done, write nothing
+    #[arg(short = 'n', long, conflicts_with = "json", help_heading = "Run")]
+    pub dry_run: bool,
+    /// Print the report to standard output
+    #[arg(long, help_heading = "Run")]
+    pub json: bool,
+}
+
+fn power_of_two(text: &str) -> Result<u32, String> {
+    let number = text.parse::<u32>().ok().filter(|n| n.is_power_of_two() && (2..=1024).contains(n));
+    number.ok_or_else(|| "expected a power of two from 2 to 1024".into())
+}
+
+/// Values for several flags at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Preset {
+    /// --max-error 0.05 --storage u8
+    Draft,
+    /// --max-error 0.01 --storage u8
+    Balanced,
+    /// --max-error 0.003 --storage f16
+    Accurate,
+}
+
+/// How densities are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Storage {
+    /// 8 bits of the square root
+    U8,
+    /// half floats
+    F16,
+    /// the paper's layout
+    Paper,
+}
+
+/// Which way green points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[allow(missing_docs)] // The flag's help says it.
+pub enum NormalY {
+    Up,
+    Down,
+}
+
+/// What lies beyond the edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[allow(missing_docs)] // The flag's help says it.
+pub enum WrapArg {
+    Repeat,
+    Clamp,
+}
+
+/// Which channels hold the normal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[allow(missing_docs)] // The flag's help says it.
+pub enum ChannelsArg {
+    Xyz,
+    Xy,
+}
+
+/// How a surface is covered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[allow(missing_docs)] // The flag's help says it.
+pub enum PlacementArg {
+    Tiled,
+    Stochastic,
+}
+
+impl Args {
+    /// Error asked of every tile.
+    pub fn wanted_error(&self) -> f64 {
+        self.max_error.unwrap_or(match self.preset {
+            Preset::Draft => 0.05,
+            Preset::Balanced => 0.01,
+            Preset::Accurate => 0.003,
+        })
+    }
+
+    /// How densities are stored.
+    pub fn wanted_storage(&self) -> DensityStorage {
+        let by_preset = if self.preset == Preset::Accurate { Storage::F16 } else { Storage::U8 };
+        match self.storage.unwrap_or(by_preset) {
+            Storage::U8 => DensityStorage::SqrtU8,
+            Storage::F16 => DensityStorage::F16,
+            Storage::Paper => DensityStorage::PaperF32,
+        }
+    }
+}

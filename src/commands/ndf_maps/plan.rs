@@ -1,0 +1,281 @@
+//! What a bake will do, checked before any of it is done: names, options, inputs, output paths.
+
+use super::args::{Args, ChannelsArg, NormalY, PlacementArg, WrapArg};
+use crate::exit::{Exit, Failure};
+use crate::input::{Channels, InputOptions, LoadedMap, load_normal_map};
+use crate::{output, pack};
+use glint_bake_core::ndf_maps::bake::{NdfMapsOptions, ROUGHNESS_RANGE};
+use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::placement::{PlacementOptions, StochasticOptions};
+use glint_bake_core::normal_map::GreenAxis;
+use glint_formats::Codec;
+use glint_formats::container::MAX_NAME_BYTES;
+use glint_formats::ndf_maps::{LayeredMaterial, Wrap};
+use glint_formats::provenance::{InputDigest, Provenance};
+use std::path::{Path, PathBuf};
+
+/// Error of one tile at most, relative to the mean, as the bake promises it.
+const WORST_OF_MEAN: f64 = 3.0;
+
+/// One map that becomes one material.
+pub struct Source {
+    /// The file.
+    pub path: PathBuf,
+    /// Name of the material.
+    pub name: String,
+    /// The map.
+    pub loaded: LoadedMap,
+    /// What provenance says of the file.
+    digest: InputDigest,
+}
+
+/// A bake that can go ahead.
+pub struct Plan {
+    /// The flags it was asked for with.
+    pub args: Args,
+    /// The maps, in the order given.
+    pub sources: Vec<Source>,
+    /// Options of every map's bake.
+    pub bake: NdfMapsOptions,
+    /// Options of every map's placement.
+    pub placement: PlacementOptions,
+    /// The two-layer material.
+    pub layers: Option<LayeredMaterial>,
+}
+
+impl Plan {
+    /// Checks arguments, then paths, then the content of the inputs.
+    pub fn new(args: Args) -> Result<Plan, Failure> {
+        let bake = bake_options(&args)?;
+        let placement = placement_options(&args)?;
+        let names = names(&args)?;
+        let layers = args.layers.as_ref().map(|text| layers(text, &names, &args)).transpose()?;
+        check_paths(&args)?;
+        let input = input_options(&args);
+        let mut sources = Vec::new();
+        for (path, name) in args.maps.iter().zip(names) {
+            let loaded = load_normal_map(path, &input)?;
+            let digest = digest(path, &loaded)?;
+            pack::check(&loaded.map, &bake, &placement, args.max_memory).map_err(|e| Failure::bake(path, &e))?;
+            sources.push(Source { path: path.clone(), name, loaded, digest });
+        }
+        Ok(Plan { args, sources, bake, placement, layers })
+    }
+
+    /// How sections are stored.
+    pub fn codec(&self) -> Codec {
+        if self.args.compress { Codec::Zstd } else { Codec::None }
+    }
+
+    /// The files the pack depends on.
+    pub fn inputs(&self) -> Vec<&Path> {
+        self.args.maps.iter().map(PathBuf::as_path).collect()
+    }
+
+    /// When the user named an error, missing it is a failure: on average, or by more than three times anywhere.
+    pub fn check_error(&self, source: &Source, material: &Material) -> Result<(), Failure> {
+        let Some(asked) = self.args.max_error else { return Ok(()) };
+        let measured = &material.maps.params.measured;
+        // The bake works with the same numbers, so only rounding can come between.
+        let kept = |found: f64, most: f64| found <= most * (1.0 + 1e-6);
+        if kept(measured.mean, asked) && kept(measured.worst, WORST_OF_MEAN * asked) {
+            return Ok(());
+        }
+        let message = format!(
+            "{}: expected E1 of {asked} on average and {} at the worst, found {:.5} and {:.5}; nothing was written. Raise \
+             --max-error or --roughness, or give --storage f16",
+            source.path.display(),
+            WORST_OF_MEAN * asked,
+            measured.mean,
+            measured.worst
+        );
+        Err(Failure::new(Exit::LimitExceeded, message))
+    }
+
+    /// Where the pack comes from. Flags that do not change its bytes are left out.
+    pub fn provenance(&self) -> Provenance {
+        let args = &self.args;
+        let debug = |value: &dyn std::fmt::Debug| format!("{value:?}").to_ascii_lowercase();
+        let mut options = vec![
+            ("roughness", args.roughness.to_string()),
+            ("max-error", self.bake.max_error.to_string()),
+            ("storage", pack::storage_name(self.bake.storage).to_owned()),
+            ("normal-y", debug(&args.normal_y)),
+            ("wrap", debug(&args.wrap)),
+            ("channels", debug(&args.channels)),
+            ("placement", debug(&args.placement)),
+            ("transforms", pack::transforms_text(pack::ranges(&self.placement))),
+        ];
+        if let Some(c) = args.crop {
+            options.push(("crop", format!("{}x{}+{}+{}", c.w, c.h, c.x, c.y)));
+        }
+        if let Some(scale) = args.height {
+            options.push(("height", scale.to_string()));
+        }
+        if args.assume_linear {
+            options.push(("assume-linear", "true".into()));
+        }
+        if args.placement == PlacementArg::Stochastic {
+            options.push(("palette", args.palette.to_string()));
+            options.push(("cells", args.cells.to_string()));
+            options.push(("spacing", args.spacing.to_string()));
+        }
+        let remark = |source: &Source, warning: &String| format!("{}: {warning}", source.digest.name);
+        Provenance {
+            options: options.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
+            seed: args.seed,
+            inputs: self.sources.iter().map(|source| source.digest.clone()).collect(),
+            normal_convention: format!("y-{}", debug(&args.normal_y)),
+            notes: self.sources.iter().flat_map(|s| s.loaded.warnings.iter().map(|w| remark(s, w))).collect(),
+            ..pack::provenance("ndf-maps")
+        }
+    }
+}
+
+fn bake_options(args: &Args) -> Result<NdfMapsOptions, Failure> {
+    let (low, high) = ROUGHNESS_RANGE;
+    if !(low..=high).contains(&args.roughness) {
+        return Err(Failure::usage(format!("--roughness: expected {low} to {high}, found {}", args.roughness)));
+    }
+    Ok(NdfMapsOptions { roughness: args.roughness, max_error: args.wanted_error(), storage: args.wanted_storage() })
+}
+
+fn placement_options(args: &Args) -> Result<PlacementOptions, Failure> {
+    if args.placement == PlacementArg::Tiled {
+        let ranges = args.transforms.unwrap_or_default();
+        // One transform serves every copy, so a range would silently become its lower end.
+        let varies = [ranges.rotate_degrees, ranges.scale, ranges.stretch, ranges.shear].iter().any(|(a, b)| a != b);
+        if varies || ranges.mirror {
+            return Err(Failure::usage(
+                "--transforms: a tiled placement has one transform for all copies; expected single values such as \
+                 rotate=30, found a range or mirror. Give --placement stochastic for different ones",
+            ));
+        }
+        return Ok(PlacementOptions::Tiled(ranges));
+    }
+    if !(0.25..=8.0).contains(&args.spacing) {
+        return Err(Failure::usage(format!("--spacing: expected 0.25 to 8, found {}", args.spacing)));
+    }
+    Ok(PlacementOptions::Stochastic(StochasticOptions {
+        ranges: args.transforms.unwrap_or(StochasticOptions::default().ranges),
+        palette: args.palette,
+        cells: args.cells,
+        spacing: args.spacing,
+        seed: args.seed,
+    }))
+}
+
+fn input_options(args: &Args) -> InputOptions {
+    InputOptions {
+        y: match args.normal_y {
+            NormalY::Up => GreenAxis::Up,
+            NormalY::Down => GreenAxis::Down,
+        },
+        wrap: match args.wrap {
+            WrapArg::Repeat => Wrap::Repeat,
+            WrapArg::Clamp => Wrap::Clamp,
+        },
+        channels: match args.channels {
+            ChannelsArg::Xyz => Channels::Xyz,
+            ChannelsArg::Xy => Channels::Xy,
+        },
+        height: args.height,
+        crop: args.crop,
+        assume_linear: args.assume_linear,
+        max_memory: args.max_memory,
+    }
+}
+
+/// One name a map: those given, then file stems made unique by a number.
+fn names(args: &Args) -> Result<Vec<String>, Failure> {
+    if args.name.len() > args.maps.len() {
+        let (names, maps) = (args.name.len(), args.maps.len());
+        return Err(Failure::usage(format!("--name: expected at most one a map, found {names} names for {maps} maps")));
+    }
+    let mut names: Vec<String> = Vec::new();
+    for name in &args.name {
+        if name.is_empty() || name.len() > MAX_NAME_BYTES || name.chars().any(char::is_control) {
+            return Err(Failure::usage(format!(
+                "--name: expected 1 to {MAX_NAME_BYTES} bytes without control characters, found {name:?}"
+            )));
+        }
+        if names.contains(name) {
+            return Err(Failure::usage(format!(
+                "--name: {name:?} is given twice; give each material a name of its own"
+            )));
+        }
+        names.push(name.clone());
+    }
+    for path in &args.maps[names.len()..] {
+        let stem: String = path.file_stem().unwrap_or_default().to_string_lossy().chars().collect();
+        let stem: String = stem.chars().map(|c| if c.is_control() { '_' } else { c }).collect();
+        let mut number = 1;
+        let mut name = cut(&stem, "");
+        while names.contains(&name) {
+            number += 1;
+            name = cut(&stem, &format!("-{number}"));
+        }
+        names.push(name);
+    }
+    Ok(names)
+}
+
+/// The stem, shortened so that it fits a name together with `suffix`.
+fn cut(stem: &str, suffix: &str) -> String {
+    let mut end = stem.len().min(MAX_NAME_BYTES - suffix.len());
+    while !stem.is_char_boundary(end) {
+        end -= 1;
+    }
+    format!("{}{suffix}", &stem[..end])
+}
+
+/// `COAT:BASE`; names may hold colons themselves, so every one is tried.
+fn layers(text: &str, names: &[String], args: &Args) -> Result<LayeredMaterial, Failure> {
+    let known = |name: &str| names.iter().any(|other| other == name);
+    for (at, _) in text.match_indices(':') {
+        let (coat, base) = (&text[..at], &text[at + 1..]);
+        if known(coat) && known(base) {
+            if text.len() > MAX_NAME_BYTES {
+                return Err(Failure::usage(format!(
+                    "--layers: both names together have at most {} bytes, found {}; give shorter ones with --name",
+                    MAX_NAME_BYTES - 1,
+                    text.len() - 1
+                )));
+            }
+            return Ok(LayeredMaterial {
+                coat: coat.to_owned(),
+                base: base.to_owned(),
+                coat_f0: args.coat_f0,
+                base_f0: args.base_f0,
+            });
+        }
+    }
+    let known = names.join(", ");
+    Err(Failure::usage(format!(
+        "--layers: expected COAT:BASE with two materials of this pack ({known}), found {text:?}"
+    )))
+}
+
+fn check_paths(args: &Args) -> Result<(), Failure> {
+    let outputs: Vec<&Path> = [Some(&args.output), args.report.as_ref(), args.depfile.as_ref()]
+        .into_iter()
+        .flatten()
+        .map(PathBuf::as_path)
+        .collect();
+    let inputs: Vec<&Path> = args.maps.iter().map(PathBuf::as_path).collect();
+    output::check_distinct(&outputs, &inputs)?;
+    for path in &inputs {
+        std::fs::File::open(path).map_err(|e| Failure::io(path, "cannot be read", &e))?;
+    }
+    outputs.iter().try_for_each(|path| output::check_writable(path))
+}
+
+/// Digest of the bytes that were loaded.
+fn digest(path: &Path, loaded: &LoadedMap) -> Result<InputDigest, Failure> {
+    let bytes = std::fs::read(path).map_err(|e| Failure::io(path, "cannot be read", &e))?;
+    if format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&bytes)) != loaded.digest {
+        let message = format!("{}: changed while it was read; run again once it is at rest", path.display());
+        return Err(Failure::new(Exit::InputOutput, message));
+    }
+    Ok(InputDigest::of(&loaded.file_name, &bytes))
+}

@@ -1,0 +1,57 @@
+//! What a bake says to the person who runs it.
+
+use super::plan::{Plan, Source};
+use crate::info::{Report, kib, percent};
+use crate::pack;
+use glint_formats::WriteOutcome;
+
+/// One input, for `--verbose`.
+pub fn of_input(source: &Source) -> String {
+    let report = &source.loaded.report;
+    let [su, sv] = report.slope_std;
+    format!(
+        "{}: {} × {} texels, {}, {} bytes, slope deviation {su:.3} {sv:.3}, material \"{}\"",
+        source.path.display(),
+        source.loaded.map.width,
+        source.loaded.map.height,
+        source.loaded.convention,
+        source.loaded.bytes,
+        source.name
+    )
+}
+
+/// What a dry run would do.
+pub fn of_plan(plan: &Plan) -> String {
+    let mut lines = Vec::new();
+    for source in &plan.sources {
+        let (width, height) = (source.loaded.map.width, source.loaded.map.height);
+        lines.push(format!(
+            "would bake {} as \"{}\": {width} × {height} texels, {} tiles",
+            source.path.display(),
+            source.name,
+            pack::tile_count(width, height)
+        ));
+    }
+    let output = plan.args.output.display();
+    lines.push(format!(
+        "would write {output}: σ_r {}, E₁ {} asked, {} storage; dry run, nothing was written",
+        plan.bake.roughness,
+        percent(plan.bake.max_error),
+        pack::storage_name(plan.bake.storage)
+    ));
+    lines.join("\n")
+}
+
+/// The pack that was written.
+pub fn of_pack(report: &Report, outcome: WriteOutcome) -> String {
+    let mut lines = Vec::new();
+    for material in &report.materials {
+        lines.push(format!("{}: {}", material.name, material.accuracy_line()));
+    }
+    let outcome = match outcome {
+        WriteOutcome::Written => "written",
+        WriteOutcome::Unchanged => "unchanged",
+    };
+    lines.push(format!("{}: {outcome}, {}, verified", report.file, kib(report.bytes)));
+    lines.join("\n")
+}

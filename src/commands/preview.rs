@@ -1,0 +1,156 @@
+//! `glint-bake preview`: a picture of a pack's material on a sphere or a plane.
+
+use crate::cli::{Terminal, values};
+use crate::exit::{Exit, Failure};
+use crate::info::Report;
+use crate::output;
+use crate::preview::{Camera, Layer, Object, Scene, Shape, Surface, render};
+use clap::ValueEnum;
+use glam::Vec3;
+use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::sections;
+use glint_formats::ndf_maps::LayeredMaterial;
+use glint_formats::{Limits, Severity};
+use std::path::PathBuf;
+
+/// Render a picture of a material
+///
+/// One directional light, microfacets with the pack's NDF, a footprint for every pixel. A pack with two layers shows
+/// both, unless --material names one. Light and view point from the object: x right, y up, z towards the viewer.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Args {
+    /// Pack to show
+    #[arg(value_name = "PACK")]
+    pub pack: PathBuf,
+    /// Picture to write (PNG)
+    #[arg(short, long, value_name = "PNG")]
+    pub output: PathBuf,
+    /// Material to show [default: the two-layer material, else the first]
+    #[arg(long, value_name = "NAME")]
+    pub material: Option<String>,
+    /// Object that has the material
+    #[arg(long, value_name = "SHAPE", default_value = "sphere")]
+    pub shape: ShapeArg,
+    /// Size of the picture
+    #[arg(long, value_name = "WxH", default_value = "640x640", value_parser = values::size)]
+    pub size: (u32, u32),
+    /// Direction towards the light
+    #[arg(long, value_name = "X,Y,Z", default_value = "-0.5,0.8,0.6", value_parser = values::direction)]
+    #[arg(allow_hyphen_values = true)]
+    pub light: [f32; 3],
+    /// Direction towards the viewer [default: 0,0.35,1 for a sphere, 0,0.8,1 for a plane]
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
+    pub view: Option<[f32; 3]>,
+    /// Texels of the surface across the object
+    #[arg(long, value_name = "TEXELS", default_value = "1536", value_parser = values::positive)]
+    pub uv_scale: f64,
+    /// Reflectance at normal incidence of a material without layers, linear
+    #[arg(long, value_name = "R,G,B", default_value = "0.56,0.57,0.58", value_parser = values::reflectance3)]
+    pub f0: [f32; 3],
+    /// Brightness of the picture
+    #[arg(long, value_name = "FACTOR", default_value = "1.0", value_parser = values::positive)]
+    pub exposure: f64,
+    /// Threads to use [default: one a core]
+    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub threads: Option<u32>,
+}
+
+/// Light on a surface that faces it: a perfect mirror's glint is far above white, matt metal below.
+const IRRADIANCE: f32 = 1.4;
+
+/// Objects of a preview.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[allow(missing_docs)] // The flag's help says it.
+pub enum ShapeArg {
+    Sphere,
+    Plane,
+}
+
+/// Runs the subcommand.
+pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
+    output::check_distinct(&[&args.output], &[&args.pack])?;
+    output::check_writable(&args.output)?;
+    let report = Report::of_file(&args.pack, &Limits::default());
+    let look = Look::choose(&report, args)?;
+    let scene = look.scene(args);
+    let (width, height) = args.size;
+    let canvas = super::on_threads(args.threads, || render(&scene, width, height))?;
+    output::write(&args.output, &canvas.to_png())?;
+    terminal.say(&format!("{}: written, {width} × {height}", args.output.display()));
+    Ok(())
+}
+
+/// The materials that a picture needs.
+struct Look {
+    base: Material,
+    coat: Option<Material>,
+    layers: Option<LayeredMaterial>,
+}
+
+impl Look {
+    fn choose(report: &Report, args: &Args) -> Result<Look, Failure> {
+        let (Some(pack), Ok(())) = (report.pack(), sound(report)) else { return Err(sound(report).unwrap_err()) };
+        let names = sections::materials(pack);
+        let load = |name: &str| sections::from_pack(pack, name).map_err(|e| Failure::bake(&args.pack, &e));
+        if let Some(name) = &args.material {
+            if !names.contains(&name.as_str()) {
+                let message = format!("--material: expected one of {}, found {name}", names.join(", "));
+                return Err(Failure::usage(message));
+            }
+            return Ok(Look { base: load(name)?, coat: None, layers: None });
+        }
+        if let Some(layers) = report.layers.first() {
+            return Ok(Look {
+                base: load(&layers.base)?,
+                coat: Some(load(&layers.coat)?),
+                layers: Some(layers.clone()),
+            });
+        }
+        let Some(first) = names.first() else {
+            let message = format!("{}: expected a material to show, found none in the pack", args.pack.display());
+            return Err(Failure::new(Exit::BadInput, message));
+        };
+        Ok(Look { base: load(first)?, coat: None, layers: None })
+    }
+
+    fn scene(&self, args: &Args) -> Scene<'_> {
+        let coat = self.coat.as_ref().zip(self.layers.as_ref());
+        let view = args.view.map(Vec3::from).unwrap_or(match args.shape {
+            ShapeArg::Sphere => Vec3::new(0.0, 0.35, 1.0),
+            ShapeArg::Plane => Vec3::new(0.0, 0.8, 1.0),
+        });
+        let view = view.normalize();
+        let surface = Surface {
+            base: Layer { material: &self.base, f0: self.layers.as_ref().map_or(args.f0, |l| l.base_f0).into() },
+            coat: coat.map(|(material, layers)| Layer { material, f0: Vec3::splat(layers.coat_f0) }),
+            texels_per_unit: (args.uv_scale / 2.0) as f32,
+        };
+        let shape = match args.shape {
+            ShapeArg::Sphere => Shape::Sphere { centre: Vec3::ZERO, radius: 1.0, axis: view },
+            ShapeArg::Plane => Shape::Plane { half_edge: 1.0 },
+        };
+        // Both shapes fit the shorter side of the picture.
+        let (width, height) = (args.size.0 as f32, args.size.1 as f32);
+        let half_height = 0.27 * (height / width).max(1.0);
+        Scene {
+            objects: vec![Object { shape, surface }],
+            light: Vec3::from(args.light).normalize(),
+            irradiance: Vec3::splat(IRRADIANCE),
+            camera: Camera { position: view * 4.6, target: Vec3::ZERO, half_height },
+            exposure: args.exposure as f32,
+            fade: None,
+        }
+    }
+}
+
+/// The first error of a pack, as a failure.
+fn sound(report: &Report) -> Result<(), Failure> {
+    let fail = |what: String| Err(Failure::new(report.exit(), format!("{}: {what}", report.file)));
+    if let Some(error) = &report.error {
+        return fail(error.clone());
+    }
+    match report.issues.iter().find(|issue| issue.severity == Severity::Error) {
+        Some(issue) => fail(issue.to_string()),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,141 @@
+//! From a map to a material to the bytes of a pack that was verified. Shared by the bakes and the demo.
+
+use crate::cli::git_hash;
+use crate::exit::{Exit, Failure};
+use glint_bake_core::error::{BakeError, Result as BakeResult};
+use glint_bake_core::ndf_maps::bake::{self, NdfMapsOptions};
+use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::placement::{self, PlacementOptions};
+use glint_bake_core::ndf_maps::sections;
+use glint_bake_core::ndf_maps::transform::TransformRanges;
+use glint_bake_core::normal_map::NormalMap;
+use glint_bake_core::progress::Progress;
+use glint_formats::ndf_maps::{DensityStorage, LAYERS, LayeredMaterial};
+use glint_formats::provenance::{PROVENANCE, Provenance};
+use glint_formats::{Codec, Limits, PackBuilder, Section, Severity, validate};
+
+/// Bytes of one tile in the paper's layout: 128 × 128 floats.
+pub const PAPER_TILE_BYTES: u64 = 128 * 128 * 4;
+
+/// A material with its name.
+pub struct Baked {
+    /// Name in the pack.
+    pub name: String,
+    /// What was baked.
+    pub material: Material,
+}
+
+/// Bakes one material.
+pub fn bake(
+    map: &NormalMap,
+    options: &NdfMapsOptions,
+    placement: &PlacementOptions,
+    progress: &dyn Progress,
+) -> BakeResult<Material> {
+    let placement = placement::bake(map, options.roughness, placement)?;
+    let maps = bake::bake(map, options, progress)?;
+    Ok(Material { maps, placement })
+}
+
+/// What would stop [`bake`], found without the work.
+pub fn check(
+    map: &NormalMap,
+    options: &NdfMapsOptions,
+    placement: &PlacementOptions,
+    max_memory: u64,
+) -> BakeResult<()> {
+    if u64::from(map.width) * u64::from(map.height) > bake::MAX_EXAMPLE_TEXELS {
+        return Err(BakeError::LimitExceeded(format!(
+            "expected at most {} texels, found {} × {}; NDF maps are for small examples: use a part of it with --crop WxH+X+Y",
+            bake::MAX_EXAMPLE_TEXELS,
+            map.width,
+            map.height
+        )));
+    }
+    let needed = tile_count(map.width, map.height) * PAPER_TILE_BYTES;
+    if options.storage == DensityStorage::PaperF32 && needed > max_memory {
+        return Err(BakeError::LimitExceeded(format!(
+            "the paper's layout needs {needed} bytes, the limit is {max_memory}; raise --max-memory or give --storage u8"
+        )));
+    }
+    placement::bake(map, options.roughness, placement).map(|_| ())
+}
+
+/// Tiles of all levels of an example.
+pub fn tile_count(width: u32, height: u32) -> u64 {
+    bake::levels_of(width, height).iter().map(|level| u64::from(level.tiles_x) * u64::from(level.tiles_y)).sum()
+}
+
+/// The bytes of a pack. They pass verification, or there is a failure: a bake never ships a pack that does not verify.
+pub fn assemble(
+    materials: &[Baked],
+    layers: Option<&LayeredMaterial>,
+    provenance: &Provenance,
+    codec: Codec,
+) -> Result<Vec<u8>, Failure> {
+    let fault =
+        |what: String| Failure::new(Exit::Unexpected, format!("the pack cannot be built: {what}; please report this"));
+    let mut builder = PackBuilder::new();
+    let mut push = |section| builder.push(section).map_err(|e| fault(e.to_string()));
+    push(Section::parameters(PROVENANCE, "", provenance).optional())?;
+    for baked in materials {
+        for section in sections::to_sections(&baked.name, &baked.material, codec) {
+            push(section)?;
+        }
+    }
+    if let Some(layers) = layers {
+        push(Section::parameters(LAYERS, &format!("{}:{}", layers.coat, layers.base), layers))?;
+    }
+    let bytes = builder.finish().map_err(|e| fault(e.to_string()))?;
+    match validate(&bytes, &Limits::default()).iter().find(|issue| issue.severity == Severity::Error) {
+        Some(issue) => Err(fault(issue.to_string())),
+        None => Ok(bytes),
+    }
+}
+
+/// Provenance with what is known of this program.
+pub fn provenance(method: &str) -> Provenance {
+    Provenance {
+        tool_version: env!("CARGO_PKG_VERSION").to_owned(),
+        git_hash: git_hash().to_owned(),
+        method: method.to_owned(),
+        ..Provenance::default()
+    }
+}
+
+/// The flag's value for a storage.
+pub fn storage_name(storage: DensityStorage) -> &'static str {
+    match storage {
+        DensityStorage::SqrtU8 => "u8",
+        DensityStorage::F16 => "f16",
+        DensityStorage::PaperF32 => "paper",
+    }
+}
+
+/// The ranges of a placement.
+pub fn ranges(placement: &PlacementOptions) -> &TransformRanges {
+    match placement {
+        PlacementOptions::Tiled(ranges) => ranges,
+        PlacementOptions::Stochastic(options) => &options.ranges,
+    }
+}
+
+/// Ranges as the flag takes them.
+pub fn transforms_text(ranges: &TransformRanges) -> String {
+    let mut parts = Vec::new();
+    let mut add = |name: &str, (low, high): (f64, f64), neutral: f64| {
+        if low != high {
+            parts.push(format!("{name}={low}..{high}"));
+        } else if low != neutral {
+            parts.push(format!("{name}={low}"));
+        }
+    };
+    add("rotate", ranges.rotate_degrees, 0.0);
+    add("scale", ranges.scale, 1.0);
+    add("stretch", ranges.stretch, 1.0);
+    add("shear", ranges.shear, 0.0);
+    if ranges.mirror {
+        parts.push("mirror".into());
+    }
+    if parts.is_empty() { "none".into() } else { parts.join(",") }
+}

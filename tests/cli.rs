@@ -1,0 +1,16 @@
+//! The programs as a user meets them: one program of tests, so that they share their helpers and one build.
+
+#[path = "cli/bad_input.rs"]
+mod bad_input;
+#[path = "cli/bake.rs"]
+mod bake;
+#[path = "cli/documentation.rs"]
+mod documentation;
+#[path = "cli/info.rs"]
+mod info;
+#[path = "cli/preview.rs"]
+mod preview;
+#[path = "cli/schema.rs"]
+mod schema;
+#[path = "cli/support.rs"]
+mod support;

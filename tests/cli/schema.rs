@@ -1,0 +1,94 @@
+//! The JSON of glint-info against docs/schema/glint-info.schema.json, by a checker of the few keywords that it uses.
+
+use crate::support::{bake, info, json, maps, root};
+use serde_json::Value;
+use std::fs;
+
+/// Every keyword that the checker knows; another one in the schema would go unchecked.
+const KEYWORDS: [&str; 13] = [
+    "$schema",
+    "$id",
+    "$defs",
+    "$ref",
+    "title",
+    "description",
+    "type",
+    "required",
+    "properties",
+    "items",
+    "enum",
+    "minimum",
+    "additionalProperties",
+];
+
+fn check(schema: &Value, root: &Value, value: &Value, at: &str) {
+    for key in schema.as_object().unwrap().keys() {
+        assert!(KEYWORDS.contains(&key.as_str()), "{at}: the checker does not know {key}");
+    }
+    if let Some(reference) = schema.get("$ref") {
+        let target = root.pointer(reference.as_str().unwrap().trim_start_matches('#')).unwrap();
+        return check(target, root, value, at);
+    }
+    if let Some(kind) = schema.get("type") {
+        let kinds: Vec<&str> = kind
+            .as_array()
+            .map_or(vec![kind], |all| all.iter().collect())
+            .iter()
+            .map(|k| k.as_str().unwrap())
+            .collect();
+        assert!(kinds.iter().any(|kind| is(value, kind)), "{at}: expected {kinds:?}, found {value}");
+    }
+    if let Some(values) = schema.get("enum") {
+        assert!(values.as_array().unwrap().contains(value), "{at}: expected one of {values}, found {value}");
+    }
+    if let Some(least) = schema.get("minimum") {
+        assert!(value.as_f64().is_none_or(|v| v >= least.as_f64().unwrap()), "{at}: {value} is below {least}");
+    }
+    if let (Some(items), Some(values)) = (schema.get("items"), value.as_array()) {
+        for (i, item) in values.iter().enumerate() {
+            check(items, root, item, &format!("{at}[{i}]"));
+        }
+    }
+    if let (Some(properties), Some(fields)) = (schema.get("properties"), value.as_object()) {
+        for name in schema.get("required").and_then(Value::as_array).into_iter().flatten() {
+            assert!(fields.contains_key(name.as_str().unwrap()), "{at}: {name} is missing");
+        }
+        for (name, field) in fields {
+            let property = properties.get(name).unwrap_or_else(|| panic!("{at}: {name} is not in the schema"));
+            check(property, root, field, &format!("{at}.{name}"));
+        }
+    }
+}
+
+fn is(value: &Value, kind: &str) -> bool {
+    match kind {
+        "object" => value.is_object(),
+        "array" => value.is_array(),
+        "string" => value.is_string(),
+        "boolean" => value.is_boolean(),
+        "integer" => value.is_u64() || value.is_i64(),
+        "number" => value.is_number(),
+        "null" => value.is_null(),
+        other => panic!("the checker does not know the type {other}"),
+    }
+}
+
+#[test]
+fn reports_keep_to_the_schema() {
+    let schema = json(&fs::read_to_string(root().join("docs/schema/glint-info.schema.json")).unwrap());
+    let folder = maps();
+    let args = ["ndf-maps", "flakes.png", "scratches.png", "-o", "out.glintpack", "--layers", "scratches:flakes"];
+    bake(folder.path(), &[&args[..], &["--placement", "stochastic"]].concat()).ok();
+    bake(folder.path(), &["ndf-maps", "flakes.png", "-o", "tiled.glintpack", "--compress"]).ok();
+    let mut files =
+        vec!["out.glintpack".to_owned(), "tiled.glintpack".into(), "missing.glintpack".into(), "flakes.png".into()];
+    for entry in fs::read_dir(root().join("fixtures/corrupt")).unwrap() {
+        let files_of_issue = fs::read_dir(entry.unwrap().path()).unwrap();
+        files.extend(files_of_issue.map(|e| e.unwrap().path().display().to_string()));
+    }
+    for file in files {
+        let report = json(&info(folder.path(), &[&file, "--json"]).stdout);
+        assert_eq!(report["$schema"], schema["$id"], "{file}");
+        check(&schema, &schema, &report, &file);
+    }
+}
