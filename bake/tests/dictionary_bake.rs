@@ -36,14 +36,14 @@ fn tables_are_the_exact_lobes_at_bin_centres() {
 
 #[test]
 fn interpolated_marginals_follow_the_exact_density_between_the_entries() {
-    let options = DictionaryOptions { marginals: 8, levels: 13, ..Default::default() };
+    let options = DictionaryOptions { marginals: 4, levels: 13, ..Default::default() };
     let dictionary = bake(&options).unwrap();
     let exact = reference::exact_level(&options, 12);
     for i in 0..options.marginals {
         let table = dictionary.entries(12, i);
         let (mut difference, mut sum) = (0.0, 0.0);
-        for k in 0..2000 {
-            let x = (f64::from(k) + 0.5) / 2000.0 * options.domain();
+        for k in 0..400 {
+            let x = (f64::from(k) + 0.5) / 400.0 * options.domain();
             let truth = exact[i as usize].density(x);
             difference += (read_linear(&table, options.spacing(), x) - truth).abs();
             sum += truth;
@@ -149,7 +149,7 @@ fn the_bytes_do_not_depend_on_threads_or_platform() {
 }
 
 /// FNV-1a of the default dictionary's payload.
-const FROZEN_DIGEST: u64 = 0xa7e7_0ab3_d999_f648;
+const FROZEN_DIGEST: u64 = 0x99bf_be9e_9420_d301;
 
 #[test]
 fn the_payload_fits_what_engines_offer() {
@@ -222,6 +222,22 @@ fn rounding_keeps_the_sum_and_moves_entries_by_a_few_units_in_the_last_place() {
         // Rounding alone moves up to 2^−11 of the sum; putting the sum right, as much again and one overshoot.
         assert!(moved <= 1.5e-3 * sum, "case {case}: moved {:.2e} of the sum", moved / sum);
         assert!((rounded / sum - 1.0).abs() < 1e-7, "case {case}: sum off by {:.2e}", rounded / sum - 1.0);
+    }
+}
+
+#[test]
+fn single_values_round_to_the_nearest_half_float() {
+    // A table of one entry whose sum is that entry: the nearest half float is the best there is.
+    let mut value = 1e-8;
+    while value < 60_000.0 {
+        let mut bits = [0u16];
+        to_half_with_sum(&[value], value, &mut bits);
+        let found = f16::from_bits(bits[0]).to_f64();
+        for neighbour in [bits[0].saturating_sub(1), bits[0] + 1] {
+            let other = f16::from_bits(neighbour).to_f64();
+            assert!((found - value).abs() <= (other - value).abs(), "{value:e} became {found:e}, {other:e} is nearer");
+        }
+        value *= 1.000_37;
     }
 }
 

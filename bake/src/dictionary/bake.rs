@@ -21,6 +21,9 @@ use crate::error::Result;
 const EXACT_LEVEL: u32 = 8;
 /// Sub-bins a standard deviation of a lobe, at least.
 const SUB_BINS_PER_STD: f64 = 6.0;
+/// Lobes whose sub-bins are found before they are counted, so that counting stays within one marginal's row for a
+/// while; divides 2^(EXACT_LEVEL + 1).
+const BLOCK: usize = 64;
 /// A lobe ends at this many standard deviations (what is beyond is 2e-9 of it).
 const LOBE_REACH: f64 = 6.0;
 
@@ -59,15 +62,24 @@ pub fn bake(options: &DictionaryOptions) -> Result<Dictionary> {
     let kernel = Kernel::new(options, quantiles.sub_bins_per_entry);
     let sub_bins = quantiles.sub_bins();
     let mut counts = vec![0u32; n * sub_bins];
+    let mut block = vec![0u32; n * BLOCK];
     let mut spread = vec![0f64; kernel.spread_len(entries)];
     lobe = 0;
     for level in EXACT_LEVEL + 1..options.levels {
         while lobe < 1 << level {
-            let uniform = draws.lobe(lobe);
-            for i in 0..n {
-                counts[i * sub_bins + quantiles.sub_bin(uniform[i])] += 1;
+            for j in 0..BLOCK {
+                let uniform = draws.lobe(lobe);
+                for i in 0..n {
+                    block[i * BLOCK + j] = quantiles.sub_bin(uniform[i]) as u32;
+                }
+                lobe += 1;
             }
-            lobe += 1;
+            for i in 0..n {
+                let row = &mut counts[i * sub_bins..][..sub_bins];
+                for sub_bin in &block[i * BLOCK..][..BLOCK] {
+                    row[*sub_bin as usize] += 1;
+                }
+            }
         }
         for i in 0..n {
             kernel.convolve(&counts[i * sub_bins..][..sub_bins], &mut spread, &mut table);
@@ -95,7 +107,7 @@ fn store(options: &DictionaryOptions, level: u32, marginal: usize, table: &mut [
 /// then a recurrence: the ratio of neighbouring samples of a Gaussian shrinks by a constant factor.
 fn add_lobe(options: &DictionaryOptions, mean: f64, sums: &mut [f64]) {
     let h = options.spacing();
-    let inv_var = 1.0 / options.lobe_std.powi(2);
+    let inv_var = 1.0 / (options.lobe_std * options.lobe_std);
     let reach = LOBE_REACH * options.lobe_std;
     let nearest = (mean / h).floor();
     let offset = (nearest + 0.5) * h - mean;
@@ -141,8 +153,10 @@ struct MeanQuantiles {
     edges: Vec<u64>,
     /// d(mean) / d(uniform) at the same edges, per unit of 2^−32.
     slopes: Vec<f64>,
-    /// Sub-bin that the smallest uniform number with these leading bits falls in.
-    guide: Vec<u32>,
+    /// For the leading bits of a uniform number: the sub-bin of the smallest such number, and the last number in it.
+    guide: Vec<(u32, u32)>,
+    /// First uniform number whose leading bits span more than two sub-bins.
+    tail: u32,
 }
 
 const GUIDE_BITS: u32 = 12;
@@ -165,14 +179,19 @@ impl MeanQuantiles {
             slopes.push(1.0 / (density * 4_294_967_296.0));
         }
         let mut guide = Vec::with_capacity(1 << GUIDE_BITS);
+        let mut tail = u32::MAX;
         let mut j = 0;
         for g in 0..1u64 << GUIDE_BITS {
-            while j + 1 < sub_bins && edges[j + 1] <= g << (32 - GUIDE_BITS) {
+            let (first, next) = (g << (32 - GUIDE_BITS), (g + 1) << (32 - GUIDE_BITS));
+            while edges[j + 1] <= first {
                 j += 1;
             }
-            guide.push(j as u32);
+            guide.push((j as u32, (edges[j + 1] - 1) as u32));
+            if j + 2 < edges.len() && edges[j + 2] < next {
+                tail = tail.min(first as u32);
+            }
         }
-        MeanQuantiles { sub_bins_per_entry: per_entry, sub_bin_width: width, edges, slopes, guide }
+        MeanQuantiles { sub_bins_per_entry: per_entry, sub_bin_width: width, edges, slopes, guide, tail }
     }
 
     fn sub_bins(&self) -> usize {
@@ -180,11 +199,12 @@ impl MeanQuantiles {
     }
 
     fn sub_bin(&self, uniform: u32) -> usize {
-        let mut j = self.guide[(uniform >> (32 - GUIDE_BITS)) as usize] as usize;
-        // One step without a branch is enough for nearly all; the last edge is above any uniform number.
-        j += usize::from(self.edges[j + 1] <= u64::from(uniform));
-        while self.edges[j + 1] <= u64::from(uniform) {
-            j += 1;
+        let (first, last_below) = self.guide[(uniform >> (32 - GUIDE_BITS)) as usize];
+        let mut j = first as usize + usize::from(uniform > last_below);
+        if uniform >= self.tail {
+            while self.edges[j + 1] <= u64::from(uniform) {
+                j += 1;
+            }
         }
         j
     }

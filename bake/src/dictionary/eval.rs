@@ -141,10 +141,13 @@ pub fn cell_sdf(
     if draw_uniform(state, DRAW_COVERAGE) >= material.relative_area {
         return (Vec3::ZERO, 0.0);
     }
-    let radius = (-2.0 * (1.0 - draw_uniform(state, DRAW_DENSITY_RADIUS)).ln()).sqrt();
-    let normal = radius * (2.0 * PI * draw_uniform(state, DRAW_DENSITY_ANGLE)).cos();
-    let wished = (facet_level + material.density_randomisation * normal + 0.5).floor();
-    let level = wished.clamp(0.0, tables.levels as f32) as u32;
+    let mut wished = facet_level;
+    if material.density_randomisation > 0.0 {
+        let radius = (-2.0 * (1.0 - draw_uniform(state, DRAW_DENSITY_RADIUS)).ln()).sqrt();
+        let normal = radius * (2.0 * PI * draw_uniform(state, DRAW_DENSITY_ANGLE)).cos();
+        wished += material.density_randomisation * normal;
+    }
+    let level = (wished + 0.5).floor().clamp(0.0, tables.levels as f32) as u32;
     if level == tables.levels {
         return (material.mean_colour * smooth_sdf(material, slope), 1.0);
     }

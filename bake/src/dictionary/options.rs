@@ -58,7 +58,8 @@ impl DictionaryOptions {
     /// Variance of the lobe means. A lobe adds its own variance and linear interpolation adds spacing² / 6, so that
     /// all three together are the target's.
     pub fn mean_variance(&self) -> f64 {
-        self.target_std().powi(2) - self.lobe_std.powi(2) - self.spacing().powi(2) / 6.0
+        let (target, spacing) = (self.target_std(), self.spacing());
+        target * target - self.lobe_std * self.lobe_std - spacing * spacing / 6.0
     }
 
     /// Number of tables, one a level and marginal; also the rows of the texture.
