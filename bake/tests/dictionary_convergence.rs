@@ -117,7 +117,7 @@ fn mean_over_cells_l1(tables: &Tables, m: &GlintMaterial, level: f32, cells: u32
 fn the_mean_over_cells_is_the_target_at_every_level_up_to_100_to_1() {
     let tables = bake(&DictionaryOptions::default()).unwrap().tables();
     for target in [TARGET_BECKMANN, TARGET_GGX] {
-        for alpha in [Vec2::splat(0.5), Vec2::new(1.0, 0.01), Vec2::new(0.01, 1.0)] {
+        for alpha in [Vec2::splat(0.5), Vec2::new(1.0, 0.01)] {
             let m = material(target, alpha, 1e9);
             let mut found = Vec::new();
             // Limits are about twice the noise of 80 000 samples of a density whose deviation is 10 at level 0.

@@ -23,7 +23,7 @@ const EXACT_LEVEL: u32 = 8;
 const SUB_BINS_PER_STD: f64 = 6.0;
 /// Lobes whose sub-bins are found before they are counted, so that counting stays within one marginal's row for a
 /// while; divides 2^(EXACT_LEVEL + 1).
-const BLOCK: usize = 64;
+const BLOCK: usize = 32;
 /// A lobe ends at this many standard deviations (what is beyond is 2e-9 of it).
 const LOBE_REACH: f64 = 6.0;
 
