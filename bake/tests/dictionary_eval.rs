@@ -1,0 +1,204 @@
+//! The run-time twin against the f64 reference: hash, cells under the footprint, slope distribution.
+
+use glam::{Vec2, Vec3};
+use glint_bake_core::dictionary::cells::{cell_weight, level_window, max_cells, pixel_footprint, row_span};
+use glint_bake_core::dictionary::eval::{
+    GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, log1p_over_x, patch_sdf, smooth_sdf,
+};
+use glint_bake_core::dictionary::hash::{CellState, cell_state, draw_bits, draw_uniform, uniform_from_bits};
+use glint_bake_core::dictionary::{DictionaryOptions, bake, reference};
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64;
+use std::collections::HashSet;
+
+fn uniform(rng: &mut Pcg64) -> f32 {
+    (rng.next_u32() >> 8) as f32 / 16_777_216.0
+}
+
+fn material(target: u32) -> GlintMaterial {
+    GlintMaterial {
+        alpha: Vec2::splat(0.5),
+        target,
+        density: 1e9,
+        relative_area: 1.0,
+        density_randomisation: 0.01,
+        max_anisotropy: 4.0,
+        seed: 7,
+        colours: Vec::new(),
+        mean_colour: Vec3::ONE,
+    }
+}
+
+#[test]
+fn the_twin_agrees_with_the_reference() {
+    let options = DictionaryOptions { marginals: 64, ..Default::default() };
+    let dictionary = bake(&options).unwrap();
+    let tables = dictionary.tables();
+    let mut rows = Vec::new();
+    for level in 0..options.levels {
+        for i in 0..options.marginals {
+            rows.push(dictionary.entries(level, i));
+        }
+    }
+    let colours = vec![Vec3::new(1.0, 0.2, 0.1), Vec3::new(0.1, 0.9, 0.3), Vec3::new(0.4, 0.4, 1.0)];
+    let mut rng = Pcg64::seed_from_u64(11);
+    let (mut worst, mut lit) = (0.0f64, 0);
+    for case in 0..3000 {
+        let mut m = material(if case % 2 == 0 { TARGET_BECKMANN } else { TARGET_GGX });
+        m.alpha = Vec2::new(0.05 + uniform(&mut rng), 0.05 + uniform(&mut rng));
+        m.density = (uniform(&mut rng) * 40.0).exp();
+        m.relative_area = if case % 3 == 0 { 0.4 } else { 1.0 };
+        m.density_randomisation = 2.0 * uniform(&mut rng);
+        m.max_anisotropy = 1.0 + 7.0 * uniform(&mut rng);
+        m.seed = rng.next_u32();
+        if case % 5 == 0 {
+            m.colours = colours.clone();
+            m.mean_colour = (colours[0] + colours[1] + colours[2]) / 3.0;
+        }
+        let size = (uniform(&mut rng) * 12.0 - 14.0).exp2();
+        let mut direction = || (Vec2::new(uniform(&mut rng), uniform(&mut rng)) - 0.5) * size;
+        let pixel = PixelOnSurface { position: direction() / size * 8.0, d_dx: direction(), d_dy: direction() };
+        let slope = (Vec2::new(uniform(&mut rng), uniform(&mut rng)) - 0.5) * 2.5 * m.alpha;
+        let fast = patch_sdf(&tables, &m, pixel, slope);
+        let (sum, coverage) = reference::patch_sdf(&options, &rows, &m, pixel, slope.as_dvec2());
+        let smooth = f64::from(smooth_sdf(&m, slope));
+        for c in 0..3 {
+            let error = (f64::from(fast.sdf[c]) - sum[c]).abs() / (sum[c] + 0.1 * smooth);
+            worst = worst.max(error);
+            assert!(error < 2e-3, "case {case} colour {c}: {} against {} ({m:?} {pixel:?})", fast.sdf[c], sum[c]);
+        }
+        assert!((f64::from(fast.coverage) - coverage).abs() < 1e-4, "case {case}: {} {coverage}", fast.coverage);
+        assert!(fast.cells <= max_cells(m.max_anisotropy));
+        lit += usize::from(sum[0] > 0.01 * smooth && fast.cells > 0);
+    }
+    assert!(lit > 1000, "only {lit} of 3000 cases had glints: the comparison says little");
+    println!("worst relative difference to the reference: {worst:.2e}");
+}
+
+#[test]
+fn every_cell_of_the_ellipse_is_visited_once_and_the_count_is_bounded() {
+    let mut rng = Pcg64::seed_from_u64(5);
+    let mut most = [0u32; 5];
+    let ratios = [1.0f32, 2.0, 4.0, 8.0, 16.0];
+    for case in 0..20_000 {
+        let size = (uniform(&mut rng) * 20.0 - 4.0).exp2();
+        let stretch = (uniform(&mut rng) * 10.0).exp2();
+        let angle = uniform(&mut rng) * 6.3;
+        let axis = Vec2::from_angle(angle);
+        let ratio = ratios[case % 5];
+        let footprint = pixel_footprint(axis * size * stretch, axis.perp() * size, ratio);
+        let position = Vec2::new(uniform(&mut rng), uniform(&mut rng)) * 1000.0;
+        let mut count = 0;
+        for level in [footprint.lod.floor() as u32, footprint.lod.floor() as u32 + 1] {
+            let window = level_window(footprint, position, level);
+            let (mut visited, mut total) = (HashSet::new(), 0.0f64);
+            for row in window.first_row..=window.last_row {
+                let (first, last) = row_span(window, row);
+                for column in first..=last {
+                    assert!(visited.insert((column, row)));
+                    total += f64::from(cell_weight(window, column, row));
+                }
+            }
+            let reach = window.xx.max(window.yy).sqrt() as i32 + 2;
+            let mut everything = 0.0f64;
+            for row in -reach..=reach {
+                for column in -reach..=reach {
+                    everything += f64::from(cell_weight(window, column, row));
+                }
+            }
+            assert!(total > 0.05, "case {case}: no weight");
+            assert!((total / everything - 1.0).abs() < 1e-5, "case {case}: {total} of {everything} visited");
+            count += visited.len() as u32;
+        }
+        assert!(count <= max_cells(ratio), "case {case}: {count} cells, bound {}", max_cells(ratio));
+        most[case % 5] = most[case % 5].max(count);
+    }
+    println!("most cells at anisotropy 1, 2, 4, 8, 16: {most:?}");
+    assert!(most[2] > 40, "the bound is not tested: {most:?}");
+}
+
+#[test]
+fn anisotropy_is_clamped_by_widening_the_minor_axis() {
+    let footprint = pixel_footprint(Vec2::new(6400.0, 0.0), Vec2::new(0.0, 6.4), 8.0);
+    assert!((footprint.lod - 800f32.log2()).abs() < 1e-3, "{footprint:?}");
+    assert!((footprint.xx.sqrt() / footprint.yy.sqrt() - 8.0).abs() < 1e-3);
+    let round = pixel_footprint(Vec2::new(3.0, 4.0), Vec2::new(-4.0, 3.0), 8.0);
+    assert!((round.xx - 25.0).abs() < 1e-4 && (round.yy - 25.0).abs() < 1e-4 && round.xy.abs() < 1e-4);
+}
+
+#[test]
+fn no_two_cells_share_a_state_and_no_cell_is_its_own_hash() {
+    let mut seen = HashSet::new();
+    for y in 0..1024u32 {
+        for x in 0..1024u32 {
+            let (x, y) = (x.wrapping_sub(512), y.wrapping_sub(512));
+            let state = cell_state(x, y, 0);
+            assert!(state != CellState { a: x, b: y }, "fixed point at {x} {y}");
+            assert!(seen.insert((state.a, state.b)), "collision at {x} {y}");
+        }
+    }
+    assert!(cell_state(1549, 0, 0) != cell_state(0, 1, 0));
+    assert!(cell_state(3, 4, 0) != cell_state(3, 4, 1));
+}
+
+#[test]
+fn draws_are_uniform_below_one_and_unlike_those_of_neighbours_and_parents() {
+    assert!(uniform_from_bits(u32::MAX) < 1.0);
+    assert!(uniform_from_bits(0) == 0.0);
+    let origin: HashSet<u32> = (0..7).map(|k| draw_bits(cell_state(0, 0, 0), k)).collect();
+    assert_eq!(origin.len(), 7, "the draws of cell (0, 0) repeat");
+    let n = 256u32;
+    for level in [0u32, 3, 12] {
+        for draw in 0..7 {
+            let at = |x: u32, y: u32| f64::from(draw_uniform(cell_state(x << level, y << level, 9), draw)) - 0.5;
+            let mut histogram = [0f64; 64];
+            let mut product = [0.0; 4];
+            for y in 0..n {
+                for x in 0..n {
+                    let u = at(x, y);
+                    histogram[((u + 0.5) * 64.0) as usize] += 1.0;
+                    let next = f64::from(draw_uniform(cell_state(x << level, y << level, 9), draw + 1)) - 0.5;
+                    for (k, other) in [at(x + 1, y), at(x, y + 1), at(x + 1, y + 1), next].into_iter().enumerate() {
+                        product[k] += 12.0 * u * other / f64::from(n * n);
+                    }
+                }
+            }
+            let expected = f64::from(n * n) / 64.0;
+            let chi2: f64 = histogram.iter().map(|c| (c - expected).powi(2) / expected).sum();
+            // 63 degrees of freedom, 21 histograms: 115 is beyond 1 in 20 000 for one.
+            assert!(chi2 < 115.0, "level {level} draw {draw}: χ² {chi2:.1}");
+            // Standard deviation of a correlation over 65 536 pairs: 1/256.
+            for (k, c) in product.into_iter().enumerate() {
+                assert!(c.abs() < 5.0 / 256.0, "level {level} draw {draw} pair {k}: correlation {c:.4}");
+            }
+        }
+    }
+}
+
+#[test]
+fn one_bit_of_the_index_changes_half_the_bits_of_a_draw() {
+    for bit in 0..32 {
+        for draw in [0, 6] {
+            let mut changed = 0;
+            for k in 0..2000u32 {
+                let (x, y) = (k.wrapping_mul(2_654_435_761), k);
+                let before = draw_bits(cell_state(x, y, 0), draw);
+                changed += (before ^ draw_bits(cell_state(x ^ (1 << bit), y, 0), draw)).count_ones();
+                changed += (before ^ draw_bits(cell_state(x, y ^ (1 << bit), 0), draw)).count_ones();
+            }
+            let share = f64::from(changed) / (2.0 * 2000.0 * 32.0);
+            assert!((share - 0.5).abs() < 0.01, "bit {bit} draw {draw}: {share:.4}");
+        }
+    }
+}
+
+#[test]
+fn the_logarithm_ratio_is_accurate() {
+    for k in -60..80 {
+        let x = (f64::from(k) * 0.25).exp2();
+        let truth = libm::log1p(x) / x;
+        let error = (f64::from(log1p_over_x(x as f32)) / truth - 1.0).abs();
+        assert!(error < 4e-7, "x = {x}: {error:.1e}");
+    }
+    assert!((log1p_over_x(0.0) - 1.0).abs() < 1e-7);
+}
