@@ -4,6 +4,7 @@ mod demo;
 mod info;
 mod ndf_maps;
 mod preview;
+mod report;
 
 use crate::cli::{Common, LONG_VERSION, Terminal};
 use crate::exit::{Failure, HELP};
@@ -25,6 +26,7 @@ pub struct Bake {
 enum Command {
     NdfMaps(Box<ndf_maps::Args>),
     Preview(preview::Args),
+    Report(report::Args),
     Demo(demo::Args),
 }
 
@@ -34,6 +36,7 @@ pub fn bake(cli: Bake) -> Result<(), Failure> {
     match cli.command {
         Command::NdfMaps(args) => ndf_maps::run(*args, terminal),
         Command::Preview(args) => preview::run(&args, terminal),
+        Command::Report(args) => report::run(&args, terminal),
         Command::Demo(args) => demo::run(&args, terminal),
     }
 }

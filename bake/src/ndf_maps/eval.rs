@@ -42,6 +42,9 @@ pub struct LobeTerm {
     pub half: Vec2,
     /// Its shear, Δx / Δy.
     pub shear: f32,
+    /// Change of the footprint's logarithm from the middle to the end of both edges: where in the box a normal lies says
+    /// how much of the footprint it gets.
+    pub tilt: Vec2,
     /// Share of the footprint times the Jacobian of `to_unit`, over the lobe's mass inside the disk.
     pub peak: f32,
 }
@@ -182,13 +185,25 @@ fn tent(p: f32) -> Taps {
 
 impl LobeTerm {
     /// Lobe of a box of edge `edge` (example texels) around an example point of projected normal `s` and Jacobian
-    /// `jacobian`, with the intrinsic roughness `sigma`, seen through the palette's `normal_to_local`.
+    /// `jacobian`, with the intrinsic roughness `sigma`, seen through the palette's `normal_to_local`. The box has
+    /// `weight` of the footprint, whose logarithm has the gradient `gradient` there (per example texel).
     ///
     /// What would leave the disk is put back: across a rim that is straight at the lobe's scale, Φ(distance / σ) of the
     /// mass stays inside.
-    pub fn new(s: Vec2, jacobian: Mat2, edge: f32, sigma: f32, normal_to_local: Mat2, weight: f32) -> LobeTerm {
+    pub fn new(
+        (s, jacobian): (Vec2, Mat2),
+        edge: f32,
+        sigma: f32,
+        normal_to_local: Mat2,
+        weight: f32,
+        gradient: Vec2,
+    ) -> LobeTerm {
         let (a, b) = (jacobian.x_axis * edge, jacobian.y_axis * edge);
-        let (long, short) = if a.length_squared() >= b.length_squared() { (a, b) } else { (b, a) };
+        let (long, short, tilt) = if a.length_squared() >= b.length_squared() {
+            (a, b, gradient * (0.5 * edge))
+        } else {
+            (b, a, Vec2::new(gradient.y, gradient.x) * (0.5 * edge))
+        };
         let length = long.length();
         let along = if length > 0.0 { long / length } else { Vec2::X };
         let height = along.perp_dot(short);
@@ -196,16 +211,18 @@ impl LobeTerm {
         let shear = if height.abs() > 1e-3 * length { along.dot(short) / height } else { 0.0 };
         let turn = Mat2::from_cols(Vec2::new(along.x, -along.y), Vec2::new(along.y, along.x));
         let to_unit = turn * normal_to_local * (1.0 / sigma);
-        let radius = s.length();
-        let outward = if radius > 0.0 { s / radius } else { Vec2::X };
-        let spread = (outward.dot(a).powi(2) + outward.dot(b).powi(2)) / 12.0;
-        let inside = normal_cdf((1.0 - radius) / (sigma * sigma + spread).sqrt());
+        let half = Vec2::new(0.5 * length, 0.5 * height.abs()) / sigma;
+        let tilt = Vec2::new(tilt.x, tilt.y.copysign(tilt.y * height));
+        // The places in the box that `density` infers spread less than the box where the lobe blurs it.
+        let inferred = tilt * half / (half * half + 3.0).map(f32::sqrt);
+        let normalised = inside_disk(s, a, b, sigma) * mean_exp(inferred.x) * mean_exp(inferred.y);
         LobeTerm {
             mean: normal_to_local.inverse() * s,
             to_unit,
-            half: Vec2::new(0.5 * length, 0.5 * height.abs()) / sigma,
+            half,
             shear,
-            peak: weight * to_unit.determinant().abs() / inside.max(1e-3),
+            tilt,
+            peak: weight * to_unit.determinant().abs() / normalised,
         }
     }
 
@@ -221,8 +238,30 @@ impl LobeTerm {
         if along.abs() > self.half.x + CUT {
             return 0.0;
         }
-        self.peak * smoothed_box(along, self.half.x) * smoothed_box(x.y, self.half.y)
+        let tilt = self.tilt.x * place_in_box(along, self.half.x) + self.tilt.y * place_in_box(x.y, self.half.y);
+        self.peak * tilt.exp() * smoothed_box(along, self.half.x) * smoothed_box(x.y, self.half.y)
     }
+}
+
+/// Where in a box of half width `half` (as −1 … 1) a point most likely comes from that was seen at `x` after a unit
+/// Gaussian: the posterior mean of Gaussians of the same variances.
+fn place_in_box(x: f32, half: f32) -> f32 {
+    (x * half / (half * half + 3.0)).clamp(-1.0, 1.0)
+}
+
+/// Mean of exp(t · x) over x in −1 … 1: sinh(t) / t, by its series where that has all digits.
+fn mean_exp(t: f32) -> f32 {
+    let q = t * t;
+    if q < 1.0 { 1.0 + q / 6.0 * (1.0 + q / 20.0 * (1.0 + q / 42.0)) } else { t.sinh() / t }
+}
+
+/// Mass inside the disk of a lobe around `s` with edges `a` and `b`, as across a straight rim.
+fn inside_disk(s: Vec2, a: Vec2, b: Vec2, sigma: f32) -> f32 {
+    let radius = s.length();
+    let distance = 1.0 - radius;
+    let outward = if radius > 0.0 { s / radius } else { Vec2::X };
+    let variance = sigma * sigma + (outward.dot(a).powi(2) + outward.dot(b).powi(2)) / 12.0;
+    if distance * distance > 25.0 * variance { 1.0 } else { normal_cdf(distance / variance.sqrt()).max(1e-3) }
 }
 
 /// A box of half width `half` and area 1, convolved with the unit Gaussian, at `x`.

@@ -21,6 +21,8 @@ const LOBE_SIGMAS: f32 = 0.5;
 const FINEST_TEXELS: f32 = 1.0 / 4096.0;
 /// Terms of one kind at most, in the area of the footprint's ellipse.
 const MAX_TERMS: f32 = 2048.0;
+/// Sub-regions of a stochastic surface that a footprint visits at most.
+const MAX_REGIONS: f32 = 256.0;
 /// From this minor axis on (in example edges) shares of tiled examples are even to 1.4 % and the top tile is enough.
 const TOP_TILE_SIGMA: f32 = 0.5;
 /// From this minor axis on (in cells) a stochastic surface is seen as shares of transforms.
@@ -53,7 +55,9 @@ struct Ellipse {
 impl Ellipse {
     fn new(footprint: &Footprint) -> Ellipse {
         let (minor, major, axis) = footprint.principal();
-        Ellipse { mean: footprint.mean.as_vec2(), major_axis: axis.as_vec2(), minor: minor as f32, major: major as f32 }
+        // A point is a footprint of the finest box's size.
+        let [minor, major] = [minor, major].map(|sigma| (sigma as f32).max(0.5 * FINEST_TEXELS));
+        Ellipse { mean: footprint.mean.as_vec2(), major_axis: axis.as_vec2(), minor, major }
     }
 
     /// Widened by a box of edge `edge`.
@@ -72,6 +76,14 @@ impl Ellipse {
         let along = d.dot(self.major_axis) / self.major;
         let across = d.perp_dot(self.major_axis) / self.minor;
         (-0.5 * (along * along + across * across)).exp() / (2.0 * std::f32::consts::PI * self.minor * self.major)
+    }
+
+    /// Gradient of the density's logarithm at x.
+    fn log_gradient(&self, x: Vec2) -> Vec2 {
+        let d = x - self.mean;
+        let across = self.major_axis.perp();
+        self.major_axis * (-d.dot(self.major_axis) / (self.major * self.major))
+            + across * (-d.dot(across) / (self.minor * self.minor))
     }
 
     /// Half the height of the ellipse of `REACH` standard deviations.
@@ -160,6 +172,9 @@ impl Material {
             return gathered.add_tile(TileTerm { tile: self.top_tile(), class: 0, weight: 1.0 });
         }
         match self.detail_for(&ellipse, settings) {
+            Detail::Tiles(level) if level.first_tile == self.top_tile() => {
+                gathered.add_tile(TileTerm { tile: level.first_tile, class: 0, weight: 1.0 });
+            }
             Detail::Tiles(level) => {
                 for_each_tile(&ellipse.widened(level.tile_texels as f32), &level, self.size(), EVERYWHERE, |slot| {
                     let weight = slot.area() * ellipse.widened(slot.size.x.max(slot.size.y)).density(slot.centre);
@@ -170,10 +185,10 @@ impl Material {
                 let widened = ellipse.widened(edge);
                 for_each_cell(&widened, edge, EVERYWHERE, |i, j| {
                     let centre = Vec2::new(i as f32 + 0.5, j as f32 + 0.5) * edge;
-                    self.add_lobe(centre, edge, 0, edge * edge * widened.density(centre), gathered);
+                    self.add_lobe(&ellipse, centre, edge, 0, edge * edge * widened.density(centre), gathered);
                 });
                 if gathered.share <= 0.0 {
-                    self.add_lobe(ellipse.mean, 0.0, 0, 1.0, gathered);
+                    self.add_lobe(&ellipse, ellipse.mean, 0.0, 0, 1.0, gathered);
                 }
             }
         }
@@ -204,12 +219,13 @@ impl Material {
         Detail::Boxes(edge)
     }
 
-    /// Adds the box of `edge` around the example point `centre`.
-    fn add_lobe(&self, centre: Vec2, edge: f32, class: u32, weight: f32, gathered: &mut Gathered) {
-        let (s, jacobian) = self.maps.normal_and_jacobian(centre);
+    /// Adds the box of `edge` around the example point `centre`, which has `weight` of the footprint `ellipse`.
+    fn add_lobe(&self, ellipse: &Ellipse, centre: Vec2, edge: f32, class: u32, weight: f32, gathered: &mut Gathered) {
+        let gradient = if edge > 0.0 { ellipse.log_gradient(centre) } else { Vec2::ZERO };
         let sigma = self.maps.params.intrinsic_roughness;
         let to_local = matrix(self.placement.palette[class as usize].normal_to_local);
-        gathered.terms.lobes.push(LobeTerm::new(s, jacobian, edge, sigma, to_local, weight));
+        let normal = self.maps.normal_and_jacobian(centre);
+        gathered.terms.lobes.push(LobeTerm::new(normal, edge, sigma, to_local, weight, gradient));
         gathered.share += weight;
     }
 
@@ -218,7 +234,7 @@ impl Material {
         let ellipse = Ellipse::new(&footprint);
         let region = 0.5 * cells.edge;
         let regions = (2.0 * REACH).powi(2) * ellipse.major * ellipse.minor.max(region) / (region * region);
-        if ellipse.minor >= CLASS_SIGMA_CELLS * cells.edge || regions > MAX_TERMS {
+        if ellipse.minor >= CLASS_SIGMA_CELLS * cells.edge || regions > MAX_REGIONS {
             return self.gather_classes(&ellipse, cells, gathered);
         }
         // A sub-region counts when its centre is near the footprint, widened by the sub-region's diagonal.
@@ -228,7 +244,7 @@ impl Material {
         if gathered.share <= 0.0 {
             let (class, centre, offset) = self.owner_at(ellipse.mean, cells);
             let local = self.position_to_local(class) * (ellipse.mean - centre) + offset;
-            self.add_lobe(local, 0.0, class, 1.0, gathered);
+            self.add_lobe(&ellipse, local, 0.0, class, 1.0, gathered);
         }
     }
 
@@ -267,7 +283,7 @@ impl Material {
                     let centre = Vec2::new(i as f32 + 0.5, j as f32 + 0.5) * edge;
                     let weight = edge * edge * widened.density(centre) * view.visible(centre, edge);
                     if weight > 0.0 {
-                        self.add_lobe(centre, edge, view.class, weight, gathered);
+                        self.add_lobe(&view.ellipse, centre, edge, view.class, weight, gathered);
                     }
                 });
             }

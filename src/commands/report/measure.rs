@@ -1,0 +1,187 @@
+//! What a report measures of one example.
+
+use glam::{DVec2, Vec2};
+use glint_bake_core::error::Result;
+use glint_bake_core::footprint::Footprint;
+use glint_bake_core::ndf_maps::bake::{self, NdfMapsOptions};
+use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::measure::{FootprintErrors, footprint_errors};
+use glint_bake_core::ndf_maps::placement::{self, PlacementOptions, StochasticOptions};
+use glint_bake_core::ndf_maps::surface::EvalSettings;
+use glint_bake_core::ndf_maps::transform::TransformRanges;
+use glint_bake_core::normal_map::NormalMap;
+use glint_bake_core::progress::Silent;
+use glint_bake_core::quality::sweep::{ANISOTROPIES, SIGMAS_TEXELS, footprints};
+use glint_formats::ndf_maps::{DensityStorage, MeasuredError};
+use std::time::Instant;
+
+/// Everything measured of one example.
+pub struct Example {
+    /// Bake settings, bytes, time and error.
+    pub settings: Vec<Setting>,
+    /// Sizes of footprints on covered surfaces.
+    pub sizes: Vec<Size>,
+    /// Run-time settings.
+    pub dial: Vec<Dial>,
+}
+
+/// One way to bake.
+pub struct Setting {
+    pub roughness: f64,
+    pub label: String,
+    pub bytes: usize,
+    pub milliseconds: f64,
+    pub error: MeasuredError,
+    /// No other setting of this roughness has fewer bytes and a smaller mean error.
+    pub on_front: bool,
+}
+
+/// Footprints of one size.
+pub struct Size {
+    pub placement: &'static str,
+    pub sigma: f64,
+    pub anisotropy: f64,
+    pub errors: FootprintErrors,
+    pub cost: Cost,
+}
+
+/// One run-time setting on the stochastic surface: means over round footprints of all sizes.
+pub struct Dial {
+    pub tile_sigmas: f32,
+    pub splits: u32,
+    pub mean_error: f64,
+    pub cost: Cost,
+}
+
+/// Microseconds on one thread.
+#[derive(Clone, Copy, Default)]
+pub struct Cost {
+    /// To find a footprint's terms.
+    pub gather: f64,
+    /// To evaluate them for one direction.
+    pub query: f64,
+}
+
+/// Measures an example with `count` footprints a size.
+pub fn example(map: &NormalMap, count: u32) -> Result<Example> {
+    let maps = bake::bake(map, &NdfMapsOptions::default(), &Silent)?;
+    let one = |degrees: f64| TransformRanges { rotate_degrees: (degrees, degrees), ..TransformRanges::default() };
+    let placements = [
+        ("tiled", PlacementOptions::Tiled(one(20.0))),
+        ("stochastic", PlacementOptions::Stochastic(StochasticOptions::default())),
+    ];
+    let mut sizes = Vec::new();
+    let mut dial = Vec::new();
+    for (name, options) in placements {
+        let placement = placement::bake(map, maps.params.intrinsic_roughness as f64, &options)?;
+        let material = Material { maps: maps.clone(), placement };
+        for anisotropy in ANISOTROPIES {
+            for sigma in SIGMAS_TEXELS {
+                let (errors, cost) = measured(map, &material, sigma, anisotropy, count, EvalSettings::default());
+                sizes.push(Size { placement: name, sigma, anisotropy, errors, cost });
+            }
+        }
+        if name == "stochastic" {
+            for (tile_sigmas, splits) in [(2.0, 0), (1.0, 0), (1.0, 1), (0.5, 1)] {
+                dial.push(dial_setting(map, &material, EvalSettings { tile_sigmas, splits }, count.div_ceil(8)));
+            }
+        }
+    }
+    Ok(Example { settings: settings(map)?, sizes, dial })
+}
+
+fn dial_setting(map: &NormalMap, material: &Material, settings: EvalSettings, count: u32) -> Dial {
+    let mut dial =
+        Dial { tile_sigmas: settings.tile_sigmas, splits: settings.splits, mean_error: 0.0, cost: Cost::default() };
+    let share = 1.0 / SIGMAS_TEXELS.len() as f64;
+    for sigma in SIGMAS_TEXELS {
+        let (errors, cost) = measured(map, material, sigma, 1.0, count, settings);
+        dial.mean_error += errors.e1.mean * share;
+        dial.cost.gather += cost.gather * share;
+        dial.cost.query += cost.query * share;
+    }
+    dial
+}
+
+fn measured(
+    map: &NormalMap,
+    material: &Material,
+    sigma: f64,
+    anisotropy: f64,
+    count: u32,
+    settings: EvalSettings,
+) -> (FootprintErrors, Cost) {
+    const SEED: u64 = 5;
+    let extent = DVec2::new(map.width as f64, map.height as f64) * 32.0;
+    let footprints = footprints(sigma, anisotropy, extent, count, SEED);
+    (footprint_errors(map, material, &footprints, settings), cost(material, &footprints, settings))
+}
+
+/// Time of a footprint and of a query, over directions spread where the whole example's NDF lies.
+fn cost(material: &Material, footprints: &[Footprint], settings: EvalSettings) -> Cost {
+    const REPEATS: usize = 8;
+    const SIDE: usize = 12;
+    let top = material.maps.tiles[material.maps.tiles.len() - 1];
+    let low = Vec2::from(top.origin);
+    let size = Vec2::new(top.width() as f32, top.height() as f32) / Vec2::from(top.inv_spacing);
+    let begin = Instant::now();
+    let mut terms = Vec::new();
+    for _ in 0..REPEATS {
+        terms = footprints.iter().map(|footprint| material.gather(footprint, settings)).collect();
+    }
+    let gather = begin.elapsed().as_secs_f64() * 1e6 / (REPEATS * footprints.len()) as f64;
+    let begin = Instant::now();
+    let mut sum = 0.0;
+    for terms in &terms {
+        for k in 0..SIDE * SIDE {
+            let at = Vec2::new((k % SIDE) as f32 + 0.5, (k / SIDE) as f32 + 0.5) / SIDE as f32;
+            sum += material.density(terms, low + at * size);
+        }
+    }
+    std::hint::black_box(sum);
+    let query = begin.elapsed().as_secs_f64() * 1e6 / (footprints.len() * SIDE * SIDE) as f64;
+    Cost { gather, query }
+}
+
+/// Bakes with every storage and several errors asked, at the roughnesses of the accuracy targets.
+fn settings(map: &NormalMap) -> Result<Vec<Setting>> {
+    let mut all = Vec::new();
+    for roughness in [0.02, 0.01, 0.005] {
+        let first = all.len();
+        let own = [0.1, 0.05, 0.02, 0.01, 0.005].map(|error| (DensityStorage::SqrtU8, error));
+        let others = [(DensityStorage::F16, 0.01), (DensityStorage::F16, 0.003), (DensityStorage::PaperF32, 0.01)];
+        for (storage, max_error) in own.into_iter().chain(others) {
+            let options = NdfMapsOptions { roughness, max_error, storage };
+            let begin = Instant::now();
+            let baked = bake::bake(map, &options, &Silent)?;
+            all.push(Setting {
+                roughness,
+                label: label(storage, max_error),
+                bytes: baked.gpu_bytes(),
+                milliseconds: begin.elapsed().as_secs_f64() * 1e3,
+                error: baked.params.measured,
+                on_front: false,
+            });
+        }
+        mark_front(&mut all[first..]);
+    }
+    Ok(all)
+}
+
+fn label(storage: DensityStorage, max_error: f64) -> String {
+    match storage {
+        DensityStorage::SqrtU8 => format!("u8, {} % asked", max_error * 100.0),
+        DensityStorage::F16 => format!("f16, {} % asked", max_error * 100.0),
+        DensityStorage::PaperF32 => "the paper's layout".to_owned(),
+    }
+}
+
+fn mark_front(settings: &mut [Setting]) {
+    for k in 0..settings.len() {
+        let (bytes, error) = (settings[k].bytes, settings[k].error.mean);
+        let beaten = settings.iter().any(|other| {
+            (other.bytes < bytes && other.error.mean <= error) || (other.bytes <= bytes && other.error.mean < error)
+        });
+        settings[k].on_front = !beaten;
+    }
+}
