@@ -1,7 +1,6 @@
 //! Quadratic B-splines: what densities are interpolated with, and the least-squares fit to samples.
 //!
-//! At equal error their texels may be 1.6 times as far apart as those of bilinear interpolation (0.88 σ against 0.55 σ
-//! for one Gaussian lobe at E₁ = 1 %), for nine reads instead of four.
+//! At equal error their texels may lie farther apart than those of bilinear interpolation, for nine reads instead of four.
 
 /// The three splines that reach a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
