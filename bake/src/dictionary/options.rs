@@ -4,6 +4,7 @@
 //! deviations of the target). Defaults are the paper's.
 
 use crate::error::{BakeError, Result};
+use glint_formats::dictionary::MAX_TEXTURE_SIZE;
 
 /// The domain of a marginal ends at this many standard deviations of the target marginal (paper, section 7.3).
 pub const DOMAIN_DEVIATIONS: f64 = 4.0;
@@ -13,8 +14,6 @@ pub const DOMAIN_DEVIATIONS: f64 = 4.0;
 pub const MIN_LOBE_SPACINGS: f64 = 0.35;
 /// Largest number of levels: the last level of each marginal then has 2^19 independent lobes.
 pub const MAX_LEVELS: u32 = 20;
-/// Largest width or height of a 2D texture that every WebGPU device offers.
-pub const MAX_TEXTURE_SIZE: u32 = 8192;
 
 /// Options of the dictionary bake.
 #[derive(Clone, Copy, Debug, PartialEq)]
