@@ -31,14 +31,20 @@ impl Delivery<'_> {
         outputs.iter().try_for_each(|path| output::check_writable(path))
     }
 
-    /// Writes the pack and what goes with it, and says so. The pack comes last: a build tool that finds it finds the
-    /// rest. `smaller` names the flags that make a pack smaller.
-    pub fn write(&self, bytes: Vec<u8>, smaller: &str, terminal: Terminal) -> Result<(), Failure> {
-        let (found, limit) = (bytes.len(), self.run.max_memory);
-        if found as u64 > limit {
-            let message = format!("the pack has {found} bytes, the limit is {limit}; raise --max-memory or {smaller}");
-            return Err(Failure::new(Exit::LimitExceeded, message));
+    /// Refuses a pack above the limit. `smaller` says what makes it smaller.
+    pub fn check_size(&self, found: u64, smaller: &str) -> Result<(), Failure> {
+        let limit = self.run.max_memory;
+        if found <= limit {
+            return Ok(());
         }
+        let message = format!("the pack has {found} bytes, the limit is {limit}; raise --max-memory or {smaller}");
+        Err(Failure::new(Exit::LimitExceeded, message))
+    }
+
+    /// Writes the pack and what goes with it, and says so. The pack comes last: a build tool that finds it finds the
+    /// rest.
+    pub fn write(&self, bytes: Vec<u8>, smaller: &str, terminal: Terminal) -> Result<(), Failure> {
+        self.check_size(bytes.len() as u64, smaller)?;
         let report = Report::of_bytes(self.output, bytes.clone());
         if let Some(path) = &self.run.report {
             output::write(path, report.to_json().as_bytes())?;

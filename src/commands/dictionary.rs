@@ -3,7 +3,7 @@
 use super::deliver::Delivery;
 use crate::cli::{RunFlags, Terminal};
 use crate::exit::Failure;
-use crate::info::{DictionaryInfo, kib};
+use crate::info::DictionaryInfo;
 use crate::pack;
 use glint_bake_core::dictionary::{self, DictionaryOptions, quality, sections};
 use glint_formats::Codec;
@@ -12,6 +12,8 @@ use std::path::PathBuf;
 
 /// Name of the dictionary in its pack.
 const NAME: &str = "dictionary";
+/// What makes a dictionary smaller.
+const SMALLER: &str = "give fewer --marginals, --levels or --entries";
 
 /// Bake a slope dictionary for procedural glints, without a normal map
 ///
@@ -24,13 +26,13 @@ pub struct Args {
     pub output: PathBuf,
 
     /// Different slope distributions a level
-    #[arg(long, value_name = "N", default_value = "192", help_heading = "Bake")]
+    #[arg(long, value_name = "N", default_value = "192", allow_negative_numbers = true, help_heading = "Bake")]
     pub marginals: u32,
     /// Levels, 1 to 20; level l has 2^(l+1) lobes
-    #[arg(long, value_name = "N", default_value = "16", help_heading = "Bake")]
+    #[arg(long, value_name = "N", default_value = "16", allow_negative_numbers = true, help_heading = "Bake")]
     pub levels: u32,
     /// Entries of one distribution
-    #[arg(long, value_name = "N", default_value = "64", help_heading = "Bake")]
+    #[arg(long, value_name = "N", default_value = "64", allow_negative_numbers = true, help_heading = "Bake")]
     pub entries: u32,
     /// Roughness of the tables' Beckmann target, 0.01 to 10; it does not limit the roughness at run time
     #[arg(long, value_name = "ALPHA", default_value = "0.5", allow_negative_numbers = true, help_heading = "Bake")]
@@ -39,7 +41,7 @@ pub struct Args {
     #[arg(long, value_name = "SLOPE", default_value = "0.02", allow_negative_numbers = true, help_heading = "Bake")]
     pub lobe_std: f64,
     /// Seed of the lobes' places
-    #[arg(long, value_name = "SEED", default_value = "0", help_heading = "Bake")]
+    #[arg(long, value_name = "SEED", default_value = "0", allow_negative_numbers = true, help_heading = "Bake")]
     pub seed: u64,
     /// Compress the pack's sections with Zstandard
     #[arg(long, help_heading = "Bake")]
@@ -55,6 +57,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     options.validate()?;
     let delivery = Delivery { output: &args.output, inputs: &[], run: &args.run };
     delivery.check()?;
+    delivery.check_size(2 * options.tables() * u64::from(options.entries), SMALLER)?;
     if args.run.dry_run {
         terminal.say(&format!(
             "would write {}: {}; dry run, nothing was written",
@@ -68,8 +71,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let sections = sections::to_sections(NAME, &dictionary, quality::measure(&dictionary), codec);
     drop(dictionary);
     let bytes = pack::seal(&args.provenance(), sections)?;
-    terminal.detail(&format!("{}: baked, {}", NAME, kib(bytes.len() as u64)));
-    delivery.write(bytes, "give fewer --marginals, --levels or --entries", terminal)
+    delivery.write(bytes, SMALLER, terminal)
 }
 
 impl Args {

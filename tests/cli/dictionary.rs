@@ -73,6 +73,7 @@ fn every_flag_is_taken_and_the_smallest_and_largest_verify() {
         &["--marginals", "12", "--levels", "12", "--alpha-dict", "10", "--lobe-std", "0.3", "--compress"],
         &["--marginals", "400", "--levels", "2", "--entries", "8192"],
         &["--marginals", "5", "--alpha-dict", "0.01", "--lobe-std", "0.0004"],
+        &["--marginals", "9", "--levels", "2", "--alpha-dict", "0.01", "--lobe-std", "0.00001", "--entries", "2048"],
     ] {
         bake(folder.path(), &[&DEFAULT[..], flags].concat()).ok();
         info(folder.path(), &["out.glintpack", "--verify"]).ok();
@@ -88,12 +89,13 @@ fn what_cannot_work_is_refused_by_the_name_of_its_flag() {
         ("--levels", "0", 2),
         ("--levels", "21", 2),
         ("--entries", "0", 2),
-        ("--entries", "30", 2),
+        ("--entries", "24", 2),
         ("--alpha-dict", "0", 2),
         ("--alpha-dict", "-0.5", 2),
         ("--alpha-dict", "nan", 2),
         ("--alpha-dict", "11", 2),
         ("--lobe-std", "0", 2),
+        ("--lobe-std", "0.000009", 2),
         ("--lobe-std", "0.0001", 2),
         ("--lobe-std", "0.36", 2),
         ("--lobe-std", "2", 2),
