@@ -22,6 +22,10 @@ lint:
 demo *ARGS:
     cargo run --release --bin glint-bake -- demo {{ARGS}}
 
+# Measure speed against error anew: the reports and plots in docs/, and their headlines in the README.
+report:
+    cargo run --release -p glint-bake-core --example dictionary_report -- --svg docs/dictionary-report.svg --readme README.md > docs/dictionary-report.md
+
 # Feed the pack reader with arbitrary bytes (needs nightly Rust and cargo-fuzz).
 fuzz TARGET="read_pack" SECONDS="60":
     cargo +nightly fuzz run {{TARGET}} -- -max_total_time={{SECONDS}}

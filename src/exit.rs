@@ -63,12 +63,22 @@ impl Failure {
 
     /// A bake of `path` that cannot be done.
     pub fn bake(path: &Path, error: &BakeError) -> Failure {
-        let exit = match error {
-            BakeError::BadInput(_) => Exit::BadInput,
-            BakeError::BadOption(_) => Exit::Usage,
-            BakeError::LimitExceeded(_) => Exit::LimitExceeded,
-        };
-        Failure::new(exit, format!("{}: {error}", path.display()))
+        Failure::new(exit_of(error), format!("{}: {error}", path.display()))
+    }
+}
+
+fn exit_of(error: &BakeError) -> Exit {
+    match error {
+        BakeError::BadInput(_) => Exit::BadInput,
+        BakeError::BadOption(_) => Exit::Usage,
+        BakeError::LimitExceeded(_) => Exit::LimitExceeded,
+    }
+}
+
+impl From<BakeError> for Failure {
+    /// A bake that has no input to name.
+    fn from(error: BakeError) -> Failure {
+        Failure::new(exit_of(&error), error.to_string())
     }
 }
 

@@ -1,4 +1,4 @@
-//! From a map to a material to the bytes of a pack that was verified. Shared by the bakes and the demo.
+//! From a map to a material, and from sections to the bytes of a pack that was verified. Shared by bakes and demo.
 
 use crate::cli::git_hash;
 use crate::exit::{Exit, Failure};
@@ -66,26 +66,31 @@ pub fn tile_count(width: u32, height: u32) -> u64 {
     bake::levels_of(width, height).iter().map(|level| u64::from(level.tiles_x) * u64::from(level.tiles_y)).sum()
 }
 
-/// The bytes of a pack. They pass verification, or there is a failure: a bake never ships a pack that does not verify.
+/// The bytes of a pack of materials.
 pub fn assemble(
     materials: &[Baked],
     layers: Option<&LayeredMaterial>,
     provenance: &Provenance,
     codec: Codec,
 ) -> Result<Vec<u8>, Failure> {
+    let mut all = Vec::new();
+    for baked in materials {
+        all.extend(sections::to_sections(&baked.name, &baked.material, codec));
+    }
+    if let Some(layers) = layers {
+        all.push(Section::parameters(LAYERS, &format!("{}:{}", layers.coat, layers.base), layers));
+    }
+    seal(provenance, all)
+}
+
+/// The bytes of a pack. They pass verification, or there is a failure: a bake never ships a pack that does not verify.
+pub fn seal(provenance: &Provenance, sections: Vec<Section>) -> Result<Vec<u8>, Failure> {
     let fault =
         |what: String| Failure::new(Exit::Unexpected, format!("the pack cannot be built: {what}; please report this"));
     let mut builder = PackBuilder::new();
     let mut push = |section| builder.push(section).map_err(|e| fault(e.to_string()));
     push(Section::parameters(PROVENANCE, "", provenance).optional())?;
-    for baked in materials {
-        for section in sections::to_sections(&baked.name, &baked.material, codec) {
-            push(section)?;
-        }
-    }
-    if let Some(layers) = layers {
-        push(Section::parameters(LAYERS, &format!("{}:{}", layers.coat, layers.base), layers))?;
-    }
+    sections.into_iter().try_for_each(push)?;
     let bytes = builder.finish().map_err(|e| fault(e.to_string()))?;
     match validate(&bytes, &Limits::default()).iter().find(|issue| issue.severity == Severity::Error) {
         Some(issue) => Err(fault(issue.to_string())),

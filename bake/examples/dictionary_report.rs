@@ -1,7 +1,8 @@
 //! Speed against error of the slope dictionary, as markdown on stdout; every number is measured in the run.
 //!
-//! `dictionary_report [--svg FILE]` prints the tables and draws error by level. `dictionary_report --bake-only FILE`
-//! bakes the default dictionary, writes its payload and stops, for measuring the process from outside.
+//! `dictionary_report [--svg FILE [--readme FILE]]` prints the tables, draws error by level, and puts the headline in
+//! place of the line of the README that starts like it. `just report` does all three. `dictionary_report --bake-only
+//! FILE` bakes the default dictionary, writes its payload and stops, for measuring the process from outside.
 
 use glam::{DVec2, Vec2, Vec3};
 use glint_bake_core::dictionary::brdf::{masking, normal_to_slope, sdf_to_ndf};
@@ -26,19 +27,23 @@ fn main() {
             let dictionary = bake(&options).expect("the default dictionary");
             std::fs::write(file, dictionary.payload()).expect("writing the payload");
         }
-        [] => report(&options, None),
-        ["--svg", file] => report(&options, Some(file)),
-        _ => eprintln!("usage: dictionary_report [--svg FILE | --bake-only FILE]"),
+        [] => report(&options, None, None),
+        ["--svg", svg] => report(&options, Some(svg), None),
+        ["--svg", svg, "--readme", readme] => report(&options, Some(svg), Some(readme)),
+        _ => eprintln!("usage: dictionary_report [--svg FILE [--readme FILE] | --bake-only FILE]"),
     }
 }
 
-fn report(options: &DictionaryOptions, svg: Option<&str>) {
+fn report(options: &DictionaryOptions, svg: Option<&str>, readme: Option<&str>) {
     let dictionary = bake(options).expect("the default dictionary");
     let mut levels = Vec::new();
     for level in 0..options.levels {
         levels.push(measure_level(&dictionary, level));
     }
-    headline(options, &levels);
+    let headline = headline(options, &levels);
+    println!("# Slope dictionary: speed against error\n");
+    println!("Written by `just report`; do not edit. The plot is [dictionary-report.svg](dictionary-report.svg).\n");
+    println!("{headline}\n");
     by_level(&levels);
     sweep(options);
     queries(&dictionary.tables());
@@ -46,6 +51,20 @@ fn report(options: &DictionaryOptions, svg: Option<&str>) {
     if let Some(file) = svg {
         std::fs::write(file, plot(&levels)).expect("writing the plot");
     }
+    if let Some(file) = readme {
+        replace_headline(file, &headline);
+    }
+}
+
+/// How the headline starts, here and in the README.
+const HEADLINE: &str = "Default dictionary (";
+
+fn replace_headline(file: &str, headline: &str) {
+    let old = std::fs::read_to_string(file).expect("reading the README");
+    assert!(old.lines().any(|line| line.starts_with(HEADLINE)), "{file} has no line that starts with {HEADLINE}");
+    let lines = old.lines().map(|line| if line.starts_with(HEADLINE) { headline } else { line });
+    let new: String = lines.flat_map(|line| [line, "\n"]).collect();
+    std::fs::write(file, new).expect("writing the README");
 }
 
 /// Least time of eight bakes, in seconds. The bake has one thread, so on a quiet machine this is its processor time.
@@ -60,16 +79,14 @@ fn bake_seconds(options: &DictionaryOptions) -> (Dictionary, f64) {
     (dictionary, least)
 }
 
-fn headline(options: &DictionaryOptions, levels: &[LevelQuality]) {
+fn headline(options: &DictionaryOptions, levels: &[LevelQuality]) -> String {
     let (dictionary, seconds) = bake_seconds(options);
     let normalisation = levels.iter().map(|q| q.normalisation).fold(0.0, f64::max);
     let last = levels[levels.len() - 1];
-    println!("# Slope dictionary: speed against error\n");
-    println!("Written by `cargo run --release -p glint-bake-core --example dictionary_report`; do not edit.\n");
-    println!(
-        "Default dictionary ({} marginals × {} levels × {} entries): **{:.0} KiB, baked in {:.3} s on one core**, worst \
+    format!(
+        "{HEADLINE}{} marginals × {} levels × {} entries): **{:.0} KiB, baked in {:.3} s on one core**, worst \
          normalisation error {normalisation:.1e}, L1 of the mean at level 0 {:.4}, KS at the last level {:.5} (mean over \
-         marginals) and {:.1e} (of the mean; the end of the domain alone leaves {:.1e}).\n",
+         marginals) and {:.1e} (of the mean; the end of the domain alone leaves {:.1e}).",
         options.marginals,
         options.levels,
         options.entries,
@@ -79,7 +96,7 @@ fn headline(options: &DictionaryOptions, levels: &[LevelQuality]) {
         last.ks_mean,
         last.ks_of_mean,
         domain_floor()
-    );
+    )
 }
 
 fn by_level(levels: &[LevelQuality]) {

@@ -5,6 +5,7 @@ pub mod error;
 pub mod footprint;
 pub mod ndf_maps;
 pub mod normal_map;
+mod pack_access;
 pub mod progress;
 pub mod quality;
 pub mod rng;

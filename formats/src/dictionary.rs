@@ -4,6 +4,7 @@
 //! A dictionary is independent of roughness, density and surface: one serves a whole scene.
 
 use crate::container::FourCc;
+use crate::vk_format;
 use serde::{Deserialize, Serialize};
 
 /// Parameters of a dictionary: [`DictionaryParams`], bincode.
@@ -14,7 +15,12 @@ pub const PARAMS: FourCc = FourCc(*b"SDPP");
 /// linear filtering and clamp to edge at u = x / domain, for x from 0 to `domain`. P is even, and zero beyond `domain`.
 pub const TABLE: FourCc = FourCc(*b"SDTB");
 /// VkFormat of the table: R16_SFLOAT.
-pub const TABLE_VK_FORMAT: u32 = 76;
+pub const TABLE_VK_FORMAT: u32 = vk_format::R16_SFLOAT;
+/// Largest width or height of the table: what every WebGPU device offers.
+pub const MAX_TEXTURE_SIZE: u32 = 8192;
+/// Largest |2 ∫ P − 1| of a row, the integral from 0 to the end of the domain as linear filtering takes it. Half floats
+/// of few entries cannot do better; a larger dictionary is nearer by orders, see [`MeasuredError::normalisation`].
+pub const ROW_TOLERANCE: f64 = 1e-3;
 
 /// Error of the stored half floats, read as linear filtering reads them, against the target and against exact lobes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

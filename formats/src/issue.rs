@@ -83,6 +83,10 @@ issue_codes! {
     ClassesDescriptor = 3017, "class map descriptor wrong";
     LayerName = 3018, "layer names a missing material";
     LayerValue = 3019, "layer reflectance out of range";
+    DictionaryParameters = 3020, "dictionary parameter out of range";
+    DictionaryShape = 3021, "dictionary table differs from parameters";
+    DictionaryValue = 3022, "dictionary value out of range";
+    DictionaryRow = 3023, "dictionary row not normalised";
 }
 
 impl fmt::Display for IssueCode {

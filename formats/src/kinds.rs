@@ -3,7 +3,7 @@
 use crate::container::{FourCc, SectionEntry};
 use crate::issue::{Issue, IssueCode};
 use crate::sections::Sections;
-use crate::{ndf_maps, ndf_maps_check, placement_check, provenance};
+use crate::{dictionary, dictionary_check, ndf_maps, ndf_maps_check, placement_check, provenance};
 
 /// A section kind this version reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,13 +28,16 @@ pub const KNOWN: &[KnownKind] = &[
     KnownKind { kind: ndf_maps::NOISE, version: 1, title: "placement noise map" },
     KnownKind { kind: ndf_maps::CLASSES, version: 1, title: "placement class map" },
     KnownKind { kind: ndf_maps::LAYERS, version: 1, title: "layered material" },
+    KnownKind { kind: dictionary::PARAMS, version: 1, title: "dictionary parameters" },
+    KnownKind { kind: dictionary::TABLE, version: 1, title: "dictionary table" },
 ];
 
 /// A check of the contents of some kinds.
 pub(crate) type Check = fn(&Sections<'_>, &mut Vec<Issue>);
 
 /// Every check of contents.
-pub(crate) const CHECKS: &[Check] = &[provenance::check, ndf_maps_check::check, placement_check::check];
+pub(crate) const CHECKS: &[Check] =
+    &[provenance::check, ndf_maps_check::check, placement_check::check, dictionary_check::check];
 
 /// What this version knows of a kind.
 pub fn known(kind: FourCc) -> Option<&'static KnownKind> {

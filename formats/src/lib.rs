@@ -10,6 +10,7 @@ compile_error!("glint-formats reads little-endian records in place and is not wr
 
 pub mod container;
 pub mod dictionary;
+mod dictionary_check;
 mod error;
 mod issue;
 pub mod kinds;

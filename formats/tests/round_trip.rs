@@ -2,6 +2,7 @@
 
 use crate::samples::*;
 use glint_formats::container::{FourCc, Limits};
+use glint_formats::dictionary::{self, DictionaryParams};
 use glint_formats::ndf_maps::{DENSITY, LAYERS, NdfMapsParams, PARAMS, TILES};
 use glint_formats::provenance::{PROVENANCE, Provenance};
 use glint_formats::{Codec, FormatError, OpenError, Pack, PackBuilder, Resource, Section, Severity, params, validate};
@@ -22,12 +23,14 @@ fn sections_come_back() {
     let pack = open(full_pack());
     assert_eq!(pack.version(), (1, 0));
     assert_eq!(pack.file_len(), full_pack().len() as u64);
-    assert_eq!(pack.names(), [ROCK, "coated rock"]);
+    assert_eq!(pack.names(), [ROCK, "coated rock", "lobes"]);
     let read = |kind, name: &str| pack.payload(pack.find(kind, name).unwrap()).unwrap();
     assert_eq!(params::decode::<Provenance>(&read(PROVENANCE, "")).unwrap(), provenance());
     assert_eq!(params::decode::<NdfMapsParams>(&read(PARAMS, ROCK)).unwrap(), ndf_params());
     assert_eq!(&*read(TILES, ROCK), bytemuck::cast_slice::<_, u8>(&tiles()));
     assert_eq!(&*read(DENSITY, ROCK), bytemuck::cast_slice::<_, u8>(&density()));
+    assert_eq!(params::decode::<DictionaryParams>(&read(dictionary::PARAMS, "lobes")).unwrap(), dictionary_params());
+    assert_eq!(&*read(dictionary::TABLE, "lobes"), bytemuck::cast_slice::<_, u8>(&dictionary_table()));
     assert!(pack.find(LAYERS, ROCK).is_none());
 }
 

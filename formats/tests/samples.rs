@@ -1,6 +1,7 @@
 //! Small good packs, and the means to make bad ones of them.
 
 use glint_formats::container::{ENTRY_BYTES, FourCc, HEADER_BYTES, Limits, full_mip_count};
+use glint_formats::dictionary::{self, DictionaryParams};
 use glint_formats::ndf_maps::*;
 use glint_formats::provenance::{InputDigest, PROVENANCE, Provenance};
 use glint_formats::{IssueCode, PackBuilder, Resource, Section, validate, vk_format};
@@ -138,12 +139,48 @@ pub fn layered() -> LayeredMaterial {
     LayeredMaterial { coat: String::from(ROCK), base: String::from(ROCK), coat_f0: 0.04, base_f0: [0.5; 3] }
 }
 
+/// Two marginals at two levels, of four entries half a slope apart.
+pub fn dictionary_params() -> DictionaryParams {
+    DictionaryParams {
+        marginals: 2,
+        levels: 2,
+        entries: 4,
+        alpha_dict: 0.7,
+        lobe_std: 0.25,
+        domain: 2.0,
+        seed: 7,
+        measured: dictionary::MeasuredError::default(),
+    }
+}
+
+/// Sixteen half floats, all 0.25: the rows of [`dictionary_params`] as a box.
+pub fn dictionary_table() -> Vec<u16> {
+    vec![0x3400; 16]
+}
+
+/// The two sections of a dictionary.
+pub fn dictionary_sections(params: &DictionaryParams, table: &[u16]) -> Vec<Section> {
+    let resource = Resource::Texture {
+        vk_format: vk_format::R16_SFLOAT,
+        width: 4,
+        height: table.len() as u32 / 4,
+        layers: 1,
+        faces: 1,
+        mips: 1,
+    };
+    vec![
+        Section::parameters(dictionary::PARAMS, "lobes", params),
+        Section::texture(dictionary::TABLE, "lobes", resource, bytemuck::cast_slice(table).to_vec()),
+    ]
+}
+
 /// A pack with every kind of section, one of them compressed.
 pub fn full_pack() -> Vec<u8> {
     let mut sections = vec![provenance_section()];
     sections.extend(good_ndf_maps());
     sections.extend(placement(&palette(), &noise_texels()));
     sections.push(Section::parameters(LAYERS, "coated rock", &layered()));
+    sections.extend(dictionary_sections(&dictionary_params(), &dictionary_table()));
     pack(sections)
 }
 

@@ -2,9 +2,11 @@
 
 mod common;
 mod response;
+mod run_flags;
 pub mod values;
 
 pub use common::{Colour, Common, ProgressWhen, Terminal};
+pub use run_flags::RunFlags;
 
 use crate::exit::{Exit, Failure};
 use clap::Parser;

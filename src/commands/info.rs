@@ -19,7 +19,7 @@ pub struct Args {
     /// Print only what is wrong, or that the pack is intact
     #[arg(long, conflicts_with = "json")]
     pub verify: bool,
-    /// Write pictures of NDF maps, normals, placement and error into this folder
+    /// Write pictures of NDF maps, normals, placement, error and dictionaries into this folder
     #[arg(long, value_name = "DIR")]
     pub plot: Option<PathBuf>,
     /// Most bytes to read and to decompress, as in 512M

@@ -1,6 +1,8 @@
 //! One file (or folder) a subcommand: its flags and what it does.
 
+mod deliver;
 mod demo;
+mod dictionary;
 mod info;
 mod ndf_maps;
 mod preview;
@@ -13,7 +15,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 /// The command line of glint-bake.
 #[derive(Parser, Debug)]
 #[command(name = "glint-bake", version, long_version = LONG_VERSION, after_help = HELP, max_term_width = 100)]
-#[command(about = "Bakes data for real-time glints from small normal maps")]
+#[command(about = "Bakes data for real-time glints")]
 #[command(after_long_help = HELP)]
 pub struct Bake {
     #[command(subcommand)]
@@ -25,6 +27,7 @@ pub struct Bake {
 #[derive(Subcommand, Debug)]
 enum Command {
     NdfMaps(Box<ndf_maps::Args>),
+    Dictionary(dictionary::Args),
     Preview(preview::Args),
     Report(report::Args),
     Demo(demo::Args),
@@ -35,6 +38,7 @@ pub fn bake(cli: Bake) -> Result<(), Failure> {
     let terminal = Terminal::new(&cli.common);
     match cli.command {
         Command::NdfMaps(args) => ndf_maps::run(*args, terminal),
+        Command::Dictionary(args) => dictionary::run(&args, terminal),
         Command::Preview(args) => preview::run(&args, terminal),
         Command::Report(args) => report::run(&args, terminal),
         Command::Demo(args) => demo::run(&args, terminal),

@@ -1,9 +1,11 @@
 //! What a pack holds, as data: the one description that text, JSON, reports and summaries are made from.
 
+mod dictionary;
 mod material;
 pub mod plot;
 mod text;
 
+pub use dictionary::DictionaryInfo;
 pub use material::MaterialInfo;
 pub use text::{kib, percent};
 
@@ -40,6 +42,8 @@ pub struct Report {
     pub materials: Vec<MaterialInfo>,
     /// Two-layer materials.
     pub layers: Vec<LayeredMaterial>,
+    /// Slope dictionaries.
+    pub dictionaries: Vec<DictionaryInfo>,
     /// Where the pack comes from.
     pub provenance: Vec<Provenance>,
     #[serde(skip)]
@@ -79,6 +83,7 @@ impl Report {
             sections: Vec::new(),
             materials: Vec::new(),
             layers: Vec::new(),
+            dictionaries: Vec::new(),
             provenance: Vec::new(),
             pack: None,
         }
@@ -96,6 +101,7 @@ impl Report {
                 .filter_map(|name| Some(MaterialInfo::of(name, &sections::from_pack(&pack, name).ok()?, &pack)))
                 .collect();
             report.layers = decode_all(&pack, LAYERS);
+            report.dictionaries = DictionaryInfo::all_of(&pack);
             report.provenance = decode_all(&pack, PROVENANCE);
         }
         report.pack = Some(pack);

@@ -62,6 +62,10 @@ impl Report {
             line(&mut out, format!("  F0 of the coat  {}", layers.coat_f0));
             line(&mut out, format!("  F0 of the base  {r}, {g}, {b}"));
         }
+        for dictionary in &self.dictionaries {
+            line(&mut out, String::new());
+            out.push_str(&dictionary.to_text());
+        }
         for provenance in &self.provenance {
             line(&mut out, String::new());
             provenance_lines(provenance, &mut out);
@@ -86,7 +90,7 @@ fn section_line(section: &SectionEntry, label_width: usize) -> String {
         Codec::None => format!("{} bytes", section.raw_len),
         Codec::Zstd => format!("{} bytes, {} stored", section.raw_len, section.stored_len),
     };
-    format!("  {:<label_width$}  {title:<20}  {resource:<41}  {stored:<12}  {:016x}", section.label(), section.checksum)
+    format!("  {:<label_width$}  {title:<21}  {resource:<41}  {stored:<12}  {:016x}", section.label(), section.checksum)
 }
 
 fn material_lines(material: &MaterialInfo, out: &mut String) {

@@ -80,8 +80,14 @@ fn reports_keep_to_the_schema() {
     let args = ["ndf-maps", "flakes.png", "scratches.png", "-o", "out.glintpack", "--layers", "scratches:flakes"];
     bake(folder.path(), &[&args[..], &["--placement", "stochastic"]].concat()).ok();
     bake(folder.path(), &["ndf-maps", "flakes.png", "-o", "tiled.glintpack", "--compress"]).ok();
-    let mut files =
-        vec!["out.glintpack".to_owned(), "tiled.glintpack".into(), "missing.glintpack".into(), "flakes.png".into()];
+    bake(folder.path(), &["dictionary", "-o", "lobes.glintpack", "--marginals", "3"]).ok();
+    let mut files = vec![
+        "out.glintpack".to_owned(),
+        "lobes.glintpack".into(),
+        "tiled.glintpack".into(),
+        "missing.glintpack".into(),
+        "flakes.png".into(),
+    ];
     for entry in fs::read_dir(root().join("fixtures/corrupt")).unwrap() {
         let files_of_issue = fs::read_dir(entry.unwrap().path()).unwrap();
         files.extend(files_of_issue.map(|e| e.unwrap().path().display().to_string()));

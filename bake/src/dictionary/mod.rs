@@ -25,6 +25,7 @@ pub mod options;
 pub mod quality;
 pub mod reference;
 pub mod round;
+pub mod sections;
 pub mod tables;
 
 pub use bake::bake;

@@ -4,6 +4,7 @@
 //! deviations of the target). Defaults are the paper's.
 
 use crate::error::{BakeError, Result};
+use glint_formats::dictionary::MAX_TEXTURE_SIZE;
 
 /// The domain of a marginal ends at this many standard deviations of the target marginal (paper, section 7.3).
 pub const DOMAIN_DEVIATIONS: f64 = 4.0;
@@ -11,10 +12,10 @@ pub const DOMAIN_DEVIATIONS: f64 = 4.0;
 /// bin centres of one lobe varies by up to 18 % with where it falls, which normalisation takes out again; below it
 /// a lobe can fall between two entries and its table would be empty.
 pub const MIN_LOBE_SPACINGS: f64 = 0.35;
+/// Narrowest lobe whose density, at most 0.48 / deviation at a bin centre, fits a half float.
+pub const MIN_LOBE_STD: f64 = 1e-5;
 /// Largest number of levels: the last level of each marginal then has 2^19 independent lobes.
 pub const MAX_LEVELS: u32 = 20;
-/// Largest width or height of a 2D texture that every WebGPU device offers.
-pub const MAX_TEXTURE_SIZE: u32 = 8192;
 
 /// Options of the dictionary bake.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,8 +89,11 @@ impl DictionaryOptions {
                 self.alpha_dict
             ));
         }
-        if !(self.lobe_std.is_finite() && self.lobe_std > 0.0) {
-            return bad(format!("--lobe-std is {}: expected a positive slope", self.lobe_std));
+        if !(self.lobe_std.is_finite() && self.lobe_std >= MIN_LOBE_STD) {
+            return bad(format!(
+                "--lobe-std is {}: expected a slope of {MIN_LOBE_STD} or more, so that densities fit half floats",
+                self.lobe_std
+            ));
         }
         if self.lobe_std >= self.domain() {
             return bad(format!(

@@ -3,12 +3,12 @@
 use super::bake::BakedNdfMaps;
 use super::eval::Material;
 use super::placement::BakedPlacement;
-use crate::error::{BakeError, Result};
-use bytemuck::Pod;
+use crate::error::Result;
+use crate::pack_access::{bytes, names_with, parameters, records};
 use glint_formats::ndf_maps::{
     CLASSES, DENSITY, NOISE, NORMALS, NdfMapsParams, PALETTE, PARAMS, PLACEMENT, PlacementKind, PlacementParams, TILES,
 };
-use glint_formats::{Codec, FourCc, Pack, Resource, Section, params, vk_format};
+use glint_formats::{Codec, Pack, Resource, Section, vk_format};
 
 /// The sections of one material under `name`; density texels are compressed when `codec` says so.
 pub fn to_sections(name: &str, material: &Material, codec: Codec) -> Vec<Section> {
@@ -84,25 +84,5 @@ pub fn from_pack(pack: &Pack, name: &str) -> Result<Material> {
 
 /// Names of the materials of this method in a pack.
 pub fn materials(pack: &Pack) -> Vec<&str> {
-    pack.names().into_iter().filter(|name| pack.find(PARAMS, name).is_some()).collect()
-}
-
-fn bytes(pack: &Pack, kind: FourCc, name: &str) -> Result<Vec<u8>> {
-    let entry =
-        pack.find(kind, name).ok_or_else(|| BakeError::BadInput(format!("material '{name}' has no section {kind}")))?;
-    let payload = pack.payload(entry).map_err(|issue| BakeError::BadInput(issue.to_string()))?;
-    Ok(payload.into_owned())
-}
-
-fn records<T: Pod>(pack: &Pack, kind: FourCc, name: &str) -> Result<Vec<T>> {
-    let bytes = bytes(pack, kind, name)?;
-    if bytes.len() % size_of::<T>() != 0 {
-        return Err(BakeError::BadInput(format!("section {kind} of '{name}' does not hold whole records")));
-    }
-    Ok(bytemuck::pod_collect_to_vec(&bytes))
-}
-
-fn parameters<T: serde::de::DeserializeOwned>(pack: &Pack, kind: FourCc, name: &str) -> Result<T> {
-    params::decode(&bytes(pack, kind, name)?)
-        .map_err(|e| BakeError::BadInput(format!("section {kind} of '{name}': {e}")))
+    names_with(pack, PARAMS)
 }

@@ -1,6 +1,6 @@
 //! Flags of `glint-bake ndf-maps`.
 
-use crate::cli::values;
+use crate::cli::{RunFlags, values};
 use crate::input::Crop;
 use clap::ValueEnum;
 use glint_bake_core::ndf_maps::transform::TransformRanges;
@@ -91,25 +91,9 @@ pub struct Args {
     #[arg(help_heading = "Layers")]
     pub base_f0: [f32; 3],
 
-    /// Threads to use [default: one a core]
-    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
-    #[arg(help_heading = "Run")]
-    pub threads: Option<u32>,
-    /// Most bytes to hold for one map, or for the finished pack, as in 512M
-    #[arg(long, value_name = "BYTES", default_value = "4G", value_parser = values::bytes, help_heading = "Run")]
-    pub max_memory: u64,
-    /// Write what glint-info --json prints about the pack
-    #[arg(long, value_name = "FILE", help_heading = "Run")]
-    pub report: Option<PathBuf>,
-    /// Write the inputs the pack depends on, in Make's syntax
-    #[arg(long, value_name = "FILE", help_heading = "Run")]
-    pub depfile: Option<PathBuf>,
-    /// Check everything, say what would be done, write nothing
-    #[arg(short = 'n', long, conflicts_with = "json", help_heading = "Run")]
-    pub dry_run: bool,
-    /// Print the report to standard output
-    #[arg(long, help_heading = "Run")]
-    pub json: bool,
+    /// Flags that every bake has.
+    #[command(flatten)]
+    pub run: RunFlags,
 }
 
 fn power_of_two(text: &str) -> Result<u32, String> {

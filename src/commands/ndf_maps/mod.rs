@@ -7,16 +7,14 @@ mod summary;
 pub use args::Args;
 
 use crate::cli::Terminal;
-use crate::exit::{Exit, Failure};
-use crate::info::Report;
-use crate::output;
+use crate::exit::Failure;
 use crate::pack::{self, Baked};
 use crate::progress::Stages;
 use plan::Plan;
 
 /// Runs the subcommand.
 pub fn run(args: Args, terminal: Terminal) -> Result<(), Failure> {
-    let threads = args.threads;
+    let threads = args.run.threads;
     super::on_threads(threads, || bake(args, terminal))?
 }
 
@@ -28,7 +26,7 @@ fn bake(args: Args, terminal: Terminal) -> Result<(), Failure> {
         }
         terminal.detail(&summary::of_input(source));
     }
-    if plan.args.dry_run {
+    if plan.args.run.dry_run {
         terminal.say(&summary::of_plan(&plan));
         return Ok(());
     }
@@ -41,28 +39,5 @@ fn bake(args: Args, terminal: Terminal) -> Result<(), Failure> {
         materials.push(Baked { name: source.name.clone(), material });
     }
     let bytes = pack::assemble(&materials, plan.layers.as_ref(), &plan.provenance(), plan.codec())?;
-    if bytes.len() as u64 > plan.args.max_memory {
-        let (found, limit) = (bytes.len(), plan.args.max_memory);
-        let message = format!("the pack has {found} bytes, the limit is {limit}; raise --max-memory or --max-error");
-        return Err(Failure::new(Exit::LimitExceeded, message));
-    }
-    write(&plan, bytes, terminal)
-}
-
-/// Writes the pack and what goes with it. The pack comes last: a build tool that finds it finds the rest.
-fn write(plan: &Plan, bytes: Vec<u8>, terminal: Terminal) -> Result<(), Failure> {
-    let args = &plan.args;
-    let report = Report::of_bytes(&args.output, bytes.clone());
-    if let Some(path) = &args.report {
-        output::write(path, report.to_json().as_bytes())?;
-    }
-    if let Some(path) = &args.depfile {
-        output::write(path, output::depfile(&args.output, &plan.inputs()).as_bytes())?;
-    }
-    let outcome = output::write(&args.output, &bytes)?;
-    terminal.say(&summary::of_pack(&report, outcome));
-    if args.json {
-        output::print(&report.to_json())?;
-    }
-    Ok(())
+    plan.delivery().write(bytes, "--max-error", terminal)
 }

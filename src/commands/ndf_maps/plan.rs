@@ -1,9 +1,10 @@
 //! What a bake will do, checked before any of it is done: names, options, inputs, output paths.
 
 use super::args::{Args, ChannelsArg, NormalY, PlacementArg, WrapArg};
+use crate::commands::deliver::Delivery;
 use crate::exit::{Exit, Failure};
 use crate::input::{Channels, InputOptions, LoadedMap, load_normal_map};
-use crate::{output, pack};
+use crate::pack;
 use glint_bake_core::ndf_maps::bake::{NdfMapsOptions, ROUGHNESS_RANGE};
 use glint_bake_core::ndf_maps::eval::Material;
 use glint_bake_core::ndf_maps::placement::{PlacementOptions, StochasticOptions};
@@ -50,13 +51,13 @@ impl Plan {
         let placement = placement_options(&args)?;
         let names = names(&args)?;
         let layers = args.layers.as_ref().map(|text| layers(text, &names, &args)).transpose()?;
-        check_paths(&args)?;
+        delivery(&args).check()?;
         let input = input_options(&args);
         let mut sources = Vec::new();
         for (path, name) in args.maps.iter().zip(names) {
             let loaded = load_normal_map(path, &input)?;
             let digest = digest(path, &loaded)?;
-            pack::check(&loaded.map, &bake, &placement, args.max_memory).map_err(|e| Failure::bake(path, &e))?;
+            pack::check(&loaded.map, &bake, &placement, args.run.max_memory).map_err(|e| Failure::bake(path, &e))?;
             sources.push(Source { path: path.clone(), name, loaded, digest });
         }
         Ok(Plan { args, sources, bake, placement, layers })
@@ -67,9 +68,9 @@ impl Plan {
         if self.args.compress { Codec::Zstd } else { Codec::None }
     }
 
-    /// The files the pack depends on.
-    pub fn inputs(&self) -> Vec<&Path> {
-        self.args.maps.iter().map(PathBuf::as_path).collect()
+    /// Where the pack goes.
+    pub fn delivery(&self) -> Delivery<'_> {
+        delivery(&self.args)
     }
 
     /// When the user named an error, missing it is a failure: on average, or by more than three times anywhere.
@@ -132,6 +133,10 @@ impl Plan {
     }
 }
 
+fn delivery(args: &Args) -> Delivery<'_> {
+    Delivery { output: &args.output, inputs: &args.maps, run: &args.run }
+}
+
 fn bake_options(args: &Args) -> Result<NdfMapsOptions, Failure> {
     let (low, high) = ROUGHNESS_RANGE;
     if !(low..=high).contains(&args.roughness) {
@@ -182,7 +187,7 @@ fn input_options(args: &Args) -> InputOptions {
         height: args.height,
         crop: args.crop,
         assume_linear: args.assume_linear,
-        max_memory: args.max_memory,
+        max_memory: args.run.max_memory,
     }
 }
 
@@ -254,20 +259,6 @@ fn layers(text: &str, names: &[String], args: &Args) -> Result<LayeredMaterial, 
     Err(Failure::usage(format!(
         "--layers: expected COAT:BASE with two materials of this pack ({known}), found {text:?}"
     )))
-}
-
-fn check_paths(args: &Args) -> Result<(), Failure> {
-    let outputs: Vec<&Path> = [Some(&args.output), args.report.as_ref(), args.depfile.as_ref()]
-        .into_iter()
-        .flatten()
-        .map(PathBuf::as_path)
-        .collect();
-    let inputs: Vec<&Path> = args.maps.iter().map(PathBuf::as_path).collect();
-    output::check_distinct(&outputs, &inputs)?;
-    for path in &inputs {
-        std::fs::File::open(path).map_err(|e| Failure::io(path, "cannot be read", &e))?;
-    }
-    outputs.iter().try_for_each(|path| output::check_writable(path))
 }
 
 /// Digest of the bytes that were loaded.

@@ -1,9 +1,8 @@
 //! What a bake says to the person who runs it.
 
 use super::plan::{Plan, Source};
-use crate::info::{Report, kib, percent};
+use crate::info::percent;
 use crate::pack;
-use glint_formats::WriteOutcome;
 
 /// One input, for `--verbose`.
 pub fn of_input(source: &Source) -> String {
@@ -39,19 +38,5 @@ pub fn of_plan(plan: &Plan) -> String {
         percent(plan.bake.max_error),
         pack::storage_name(plan.bake.storage)
     ));
-    lines.join("\n")
-}
-
-/// The pack that was written.
-pub fn of_pack(report: &Report, outcome: WriteOutcome) -> String {
-    let mut lines = Vec::new();
-    for material in &report.materials {
-        lines.push(format!("{}: {}", material.name, material.accuracy_line()));
-    }
-    let outcome = match outcome {
-        WriteOutcome::Written => "written",
-        WriteOutcome::Unchanged => "unchanged",
-    };
-    lines.push(format!("{}: {outcome}, {}, verified", report.file, kib(report.bytes)));
     lines.join("\n")
 }

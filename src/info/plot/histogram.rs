@@ -1,5 +1,6 @@
 //! How many tiles have which error, as an SVG.
 
+use super::escape;
 use glint_bake_core::ndf_maps::bake::BakedNdfMaps;
 use std::fmt::Write;
 
@@ -68,8 +69,4 @@ pub fn svg(name: &str, maps: &BakedNdfMaps) -> String {
     }
     out.push_str("</svg>\n");
     out
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -1,15 +1,16 @@
-//! Pictures of what a pack holds: NDF tiles, normals, placement, tile errors.
+//! Pictures of what a pack holds: NDF tiles, normals, placement, tile errors, dictionaries.
 
 mod histogram;
 mod maps;
+mod marginals;
 
 use crate::exit::{Exit, Failure};
 use crate::output;
-use glint_bake_core::ndf_maps::sections;
+use glint_bake_core::{dictionary, ndf_maps::sections};
 use glint_formats::Pack;
 use std::path::{Path, PathBuf};
 
-/// Writes the pictures of every material into `folder`, which is created, and says which they are.
+/// Writes the pictures of every material and dictionary into `folder`, which is created, and says which they are.
 pub fn write_all(pack: &Pack, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     std::fs::create_dir_all(folder).map_err(|e| Failure::io(folder, "cannot be created", &e))?;
     let mut written = Vec::new();
@@ -33,7 +34,17 @@ pub fn write_all(pack: &Pack, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
         }
         write(format!("{stem}-errors.svg"), histogram::svg(name, &material.maps).into_bytes())?;
     }
+    for (i, name) in dictionary::sections::dictionaries(pack).into_iter().enumerate() {
+        let (dictionary, _) = dictionary::sections::from_pack(pack, name)
+            .map_err(|e| Failure::new(Exit::BadInput, format!("dictionary {name}: {e}")))?;
+        write(format!("{}-marginals.svg", file_stem(i, name)), marginals::svg(name, &dictionary).into_bytes())?;
+    }
     Ok(written)
+}
+
+/// Text as it stands in an SVG.
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 /// A file name for a material, whose own name may hold anything.
