@@ -23,8 +23,14 @@ demo *ARGS:
     cargo run --release --bin glint-bake -- demo {{ARGS}}
 
 # Measure speed against error anew: the reports and plots in docs/, and their headlines in the README.
-report:
+report MAPS="../shared/data/tiny/brushed_16x16.png":
+    cargo run --release --bin glint-bake -- report {{MAPS}} -o docs
     cargo run --release -p glint-bake-core --example dictionary_report -- --svg docs/dictionary-report.svg --readme README.md > docs/dictionary-report.md
+
+# The NDF maps' report with few footprints, into target/bench: minutes instead of tens of minutes.
+bench MAPS="../shared/data/tiny/brushed_16x16.png":
+    mkdir -p target/bench
+    cargo run --release --bin glint-bake -- report {{MAPS}} -o target/bench --footprints 4
 
 # Feed the pack reader with arbitrary bytes (needs nightly Rust and cargo-fuzz).
 fuzz TARGET="read_pack" SECONDS="60":

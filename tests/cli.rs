@@ -12,6 +12,8 @@ mod documentation;
 mod info;
 #[path = "cli/preview.rs"]
 mod preview;
+#[path = "cli/report.rs"]
+mod report;
 #[path = "cli/schema.rs"]
 mod schema;
 #[path = "cli/support.rs"]
