@@ -28,7 +28,7 @@ fn check_tiles(name: &str, map: &NormalMap, roughness: f64, asked: f64, stride: 
     let measured = baked.params.measured;
     let all = stride == 1;
     // The last five tiles are the largest; their exact integral is the dearest.
-    let select = |tile: usize| all || (tile % stride == 0 && tile + 5 < baked.tiles.len());
+    let select = |tile: usize| all || (tile.is_multiple_of(stride) && tile + 5 < baked.tiles.len());
     let exact = tile_errors(map, &baked, select);
     let e1 = Summary::of(exact.iter().map(|e| e.e1).collect());
     println!(

@@ -7,6 +7,7 @@
 
 pub mod bake;
 mod disk;
+mod ellipse;
 pub mod eval;
 mod fine_grid;
 pub mod measure;
