@@ -4,6 +4,8 @@
 mod bad_input;
 #[path = "cli/bake.rs"]
 mod bake;
+#[path = "cli/damage.rs"]
+mod damage;
 #[path = "cli/dictionary.rs"]
 mod dictionary;
 #[path = "cli/documentation.rs"]

@@ -77,7 +77,7 @@ fn tiles_at_small_roughness_are_as_exact_as_asked() {
     let Some(data) = real_maps::data() else { return };
     for name in TINY {
         let map = real_maps::load(&data, name, None);
-        let stride = 1 + (map.width * map.height) as usize / 24;
+        let stride = 1 + (map.width * map.height) as usize / 16;
         check_tiles(name, &map, 0.01, 0.02, stride);
         check_tiles(name, &map, 0.005, 0.05, 2 * stride);
     }
@@ -121,18 +121,8 @@ fn surface_error(map: &NormalMap, options: &PlacementOptions, sizes: &[(f64, f64
 }
 
 /// The sweep's sizes; long footprints of small ones are left to the report, their reference takes minutes.
-const SIZES: [(f64, f64); 10] = [
-    (0.5, 1.0),
-    (1.0, 1.0),
-    (2.0, 1.0),
-    (4.0, 1.0),
-    (8.0, 1.0),
-    (16.0, 1.0),
-    (32.0, 1.0),
-    (2.0, 4.0),
-    (8.0, 4.0),
-    (32.0, 4.0),
-];
+const SIZES: [(f64, f64); 9] =
+    [(0.5, 1.0), (1.0, 1.0), (2.0, 1.0), (4.0, 1.0), (8.0, 1.0), (16.0, 1.0), (32.0, 1.0), (8.0, 4.0), (32.0, 4.0)];
 
 #[test]
 fn a_tiled_surface_agrees_with_its_explicit_map() {
