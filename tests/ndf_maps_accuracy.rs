@@ -65,10 +65,10 @@ fn tiles_of_tiny_maps_are_as_exact_as_asked() {
 fn tiles_of_crops_are_as_exact_as_asked() {
     let Some(data) = real_maps::data() else { return };
     for (name, x, y) in CROPS_16 {
-        check_tiles(name, &real_maps::load(&data, name, Some((x, y, 16))), 0.02, 0.01, 3);
+        check_tiles(name, &real_maps::load(&data, name, Some((x, y, 16))), 0.02, 0.01, 9);
     }
     for (name, x, y) in CROPS_32 {
-        check_tiles(name, &real_maps::load(&data, name, Some((x, y, 32))), 0.02, 0.01, 31);
+        check_tiles(name, &real_maps::load(&data, name, Some((x, y, 32))), 0.02, 0.01, 61);
     }
 }
 
