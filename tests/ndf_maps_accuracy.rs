@@ -84,7 +84,7 @@ fn tiles_at_small_roughness_are_as_exact_as_asked() {
 }
 
 #[test]
-fn sizes_stay_within_a_64th_of_the_paper_s() {
+fn sizes_stay_within_the_byte_limits() {
     let Some(data) = real_maps::data() else { return };
     let size = |name: &str, crop| baked(&real_maps::load(&data, name, crop), 0.02, 0.01).gpu_bytes();
     assert!(size("tiny/brushed_16x16.png", None) <= 96 * 1024);
@@ -114,7 +114,7 @@ fn surface_error(map: &NormalMap, options: &PlacementOptions, sizes: &[(f64, f64
             "σ {sigma} anisotropy {anisotropy}: E₁ {:.4}, energy {:.1e}, {:.0} terms",
             errors.e1.mean, errors.energy.worst, errors.terms
         );
-        assert!(errors.energy.worst <= 5e-3, "energy {:?} at σ {sigma}", errors.energy);
+        assert!(errors.energy.worst <= 1e-3, "energy {:?} at σ {sigma}", errors.energy);
         total += errors.e1.mean;
     }
     total / sizes.len() as f64

@@ -5,7 +5,7 @@ use crate::commands::deliver::Delivery;
 use crate::exit::{Exit, Failure};
 use crate::input::{Channels, InputOptions, LoadedMap, load_normal_map};
 use crate::pack;
-use glint_bake_core::ndf_maps::bake::{NdfMapsOptions, ROUGHNESS_RANGE};
+use glint_bake_core::ndf_maps::bake::{NdfMapsOptions, ROUGHNESS_RANGE, WORST_OF_MEAN};
 use glint_bake_core::ndf_maps::eval::Material;
 use glint_bake_core::ndf_maps::placement::{PlacementOptions, StochasticOptions};
 use glint_bake_core::normal_map::GreenAxis;
@@ -14,9 +14,6 @@ use glint_formats::container::MAX_NAME_BYTES;
 use glint_formats::ndf_maps::{LayeredMaterial, Wrap};
 use glint_formats::provenance::{InputDigest, Provenance};
 use std::path::{Path, PathBuf};
-
-/// Error of one tile at most, relative to the mean, as the bake promises it.
-const WORST_OF_MEAN: f64 = 3.0;
 
 /// One map that becomes one material.
 pub struct Source {
