@@ -1,6 +1,7 @@
 //! The algorithms of glint-bake: slices in, sections out. No files, no printing, no command line, no GPU.
 
 pub mod dictionary;
+pub mod environment;
 pub mod error;
 pub mod footprint;
 pub mod ndf_maps;

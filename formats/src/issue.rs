@@ -87,6 +87,12 @@ issue_codes! {
     DictionaryShape = 3021, "dictionary table differs from parameters";
     DictionaryValue = 3022, "dictionary value out of range";
     DictionaryRow = 3023, "dictionary row not normalised";
+    EnvironmentParameters = 3030, "environment parameter out of range";
+    EnvironmentLevels = 3031, "environment levels do not rise from 0";
+    EnvironmentShape = 3032, "environment texture differs from parameters";
+    EnvironmentRadiance = 3033, "environment radiance out of range";
+    EnvironmentIndicators = 3034, "environment indicators are no shares of a whole";
+    EnvironmentAlbedo = 3035, "environment albedo out of range";
 }
 
 impl fmt::Display for IssueCode {

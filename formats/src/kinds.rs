@@ -3,7 +3,9 @@
 use crate::container::{FourCc, SectionEntry};
 use crate::issue::{Issue, IssueCode};
 use crate::sections::Sections;
-use crate::{dictionary, dictionary_check, ndf_maps, ndf_maps_check, placement_check, provenance};
+use crate::{
+    dictionary, dictionary_check, environment, environment_check, ndf_maps, ndf_maps_check, placement_check, provenance,
+};
 
 /// A section kind this version reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,14 +32,24 @@ pub const KNOWN: &[KnownKind] = &[
     KnownKind { kind: ndf_maps::LAYERS, version: 1, title: "layered material" },
     KnownKind { kind: dictionary::PARAMS, version: 1, title: "dictionary parameters" },
     KnownKind { kind: dictionary::TABLE, version: 1, title: "dictionary table" },
+    KnownKind { kind: environment::PARAMS, version: 1, title: "environment parameters" },
+    KnownKind { kind: environment::RADIANCE, version: 1, title: "environment radiance" },
+    KnownKind { kind: environment::INDICATORS, version: 1, title: "environment indicators" },
+    KnownKind { kind: environment::COLOURS, version: 1, title: "environment colours" },
+    KnownKind { kind: environment::ALBEDO, version: 1, title: "environment albedo" },
 ];
 
 /// A check of the contents of some kinds.
 pub(crate) type Check = fn(&Sections<'_>, &mut Vec<Issue>);
 
 /// Every check of contents.
-pub(crate) const CHECKS: &[Check] =
-    &[provenance::check, ndf_maps_check::check, placement_check::check, dictionary_check::check];
+pub(crate) const CHECKS: &[Check] = &[
+    provenance::check,
+    ndf_maps_check::check,
+    placement_check::check,
+    dictionary_check::check,
+    environment_check::check,
+];
 
 /// What this version knows of a kind.
 pub fn known(kind: FourCc) -> Option<&'static KnownKind> {

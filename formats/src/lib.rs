@@ -11,6 +11,8 @@ compile_error!("glint-formats reads little-endian records in place and is not wr
 pub mod container;
 pub mod dictionary;
 mod dictionary_check;
+pub mod environment;
+mod environment_check;
 mod error;
 mod issue;
 pub mod kinds;

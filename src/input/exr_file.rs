@@ -46,6 +46,59 @@ pub(super) fn decode(
     Ok(Pixels { width, height, values })
 }
 
+/// Decodes the first layer of an EXR file as linear RGB radiance; one channel is grey.
+pub(super) fn decode_radiance(
+    path: &std::path::Path,
+    bytes: &[u8],
+    options: &InputOptions,
+) -> std::result::Result<(u32, u32, Vec<[f32; 3]>), InputError> {
+    check_header(path, bytes, options)?;
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(|e| from_exr(path, e))?;
+    let layer = &image.layer_data;
+    let channels = &layer.channel_data.list;
+    if let Some(odd) = channels.iter().find(|c| c.sampling != Vec2(1, 1)) {
+        return Err(InputError::unsupported(
+            path,
+            format!("channel {} is subsampled; expected one value a pixel: export it as RGB", odd.name),
+        ));
+    }
+    let window = image.attributes.display_window.size;
+    if window != layer.size {
+        return Err(InputError::unsupported(
+            path,
+            format!(
+                "the pixels are a part of {} × {} of an image of {} × {}; expected a whole panorama: export it uncropped",
+                layer.size.width(),
+                layer.size.height(),
+                window.width(),
+                window.height()
+            ),
+        ));
+    }
+    let find = |letter: &str| channels.iter().find(|c| short_name(c).eq_ignore_ascii_case(letter));
+    let (red, green, blue) = match (find("R"), find("G"), find("B"), channels.as_slice()) {
+        (Some(red), Some(green), Some(blue), _) => (red, green, blue),
+        (None, None, None, [grey]) => (grey, grey, grey),
+        _ => {
+            return Err(InputError::bad(
+                path,
+                format!("expected channels R, G, B, or a single one, found {}", names(channels)),
+            ));
+        }
+    };
+    let values = |channel: &AnyChannel<FlatSamples>| channel.sample_data.values_as_f32().collect::<Vec<f32>>();
+    let (red, green, blue) = (values(red), values(green), values(blue));
+    let pixels = (0..red.len()).map(|i| [red[i], green[i], blue[i]]).collect();
+    Ok((layer.size.width() as u32, layer.size.height() as u32, pixels))
+}
+
 /// Looks at the sizes that the header claims, before anything is allocated for them.
 fn check_header(path: &Path, bytes: &[u8], options: &InputOptions) -> std::result::Result<(), InputError> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|e| from_exr(path, e))?;

@@ -8,6 +8,7 @@
 //!   `assume_linear` says that the values are to be taken as they are. JPEG without a profile carries no tag.
 
 mod colour_tag;
+pub mod environment;
 mod error;
 mod exr_file;
 mod format;

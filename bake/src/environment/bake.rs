@@ -1,0 +1,247 @@
+//! Bakes an environment: levels, first mip by areas, filtered mips by their error bound, albedo, rounding, measurement.
+//!
+//! Paper: section 5. Radiance and indicators have the same weights in every texel, so they are filtered together.
+
+use super::albedo;
+use super::cube::{Resampling, texel_solid_angle_sr};
+use super::image::{EnvironmentImage, luminance};
+use super::kernel::{Lobe, roughness_of_mips};
+use super::levels::{Seen, fewest, log_uniform, optimal, shares};
+use super::options::{EnvironmentOptions, LevelCount};
+use super::prefilter::filter_mip;
+use super::quantise;
+use super::quality;
+use super::tables::Environment;
+use super::tree::{BASE_CHANNELS, Tree};
+use crate::error::{BakeError, Result};
+use crate::progress::Progress;
+use glint_formats::environment::{EnvironmentParams, LevelChoice, MeasuredError, Storage};
+use half::f16;
+
+/// Largest stored radiance whose neighbours are still finite half floats.
+const MAX_STORED: f64 = 32768.0;
+/// Images whose brightest pixel is below this are scaled up, so that half floats keep their digits.
+const DIM: f64 = 1.0 / 64.0;
+
+/// Mips below this roughness see single pixels, and may have [`OF_SHARP`] times the error.
+const SHARP: f64 = 0.04;
+/// See [`SHARP`].
+const OF_SHARP: f64 = 4.0;
+
+/// Bakes `image`, of which `negative_pixels` were mended.
+///
+/// # Errors
+/// Those of [`EnvironmentOptions::validate`]; [`BakeError::LimitExceeded`] when a mip misses the error that was asked.
+pub fn bake(
+    image: &EnvironmentImage,
+    negative_pixels: u64,
+    options: &EnvironmentOptions,
+    progress: &dyn Progress,
+) -> Result<Environment> {
+    options.validate()?;
+    let (levels, second_moment) = choose_levels(image, options);
+    let params = EnvironmentParams {
+        face_size: options.face_size,
+        kernel: options.kernel,
+        storage: options.storage,
+        roughness: roughness_of_mips(options.mips()),
+        radiance_scale: radiance_scale(image, options.storage),
+        coloured: options.coloured,
+        levels,
+        level_choice: options.level_choice,
+        albedo_size: albedo::SIZE,
+        source_width: image.width,
+        source_height: image.height,
+        negative_pixels,
+        mean_radiance: image.mean(),
+        max_error: options.max_error,
+        measured: MeasuredError { second_moment, ..MeasuredError::default() },
+    };
+    let mut environment = Environment {
+        params,
+        radiance: Vec::new(),
+        indicators: Vec::new(),
+        colours: Vec::new(),
+        albedo: Vec::new(),
+    };
+    let mips = filtered_mips(image, options, &environment.params, progress);
+    round(&mips, &mut environment);
+    environment.params.measured.energy = energy_error(image, &mips.texels[0], mips.channels);
+    drop(mips);
+    environment.albedo = albedo::table()
+        .into_iter()
+        .flat_map(|areas| [areas.scale, areas.bias, areas.reflecting, areas.whole])
+        .map(|value| f16::from_f32(value as f32).to_bits())
+        .collect();
+    quality::measure(image, options.measured_texels, &mut environment, progress);
+    check_error(&environment)?;
+    Ok(environment)
+}
+
+/// Levels and the mean relative error of the second moment that they lead to.
+fn choose_levels(image: &EnvironmentImage, options: &EnvironmentOptions) -> (Vec<f64>, f64) {
+    let seen = || Seen::new(image, options.kernel);
+    match (options.levels, options.level_choice) {
+        (LevelCount::Exactly(1), _) => (vec![luminance(image.mean())], 0.0),
+        (LevelCount::Fewest(error), _) => fewest(&seen(), error),
+        (LevelCount::Exactly(count), LevelChoice::Optimal) => optimal(&seen(), count as usize),
+        (LevelCount::Exactly(count), LevelChoice::LogUniform) => {
+            let levels = log_uniform(image, count as usize, options.floor);
+            let error = seen().error(&levels);
+            (levels, error)
+        }
+    }
+}
+
+/// The power of two that brings radiance into the range of half floats; 1 where it is there already.
+fn radiance_scale(image: &EnvironmentImage, storage: Storage) -> f64 {
+    let brightest = image.pixels.iter().flatten().fold(0.0f32, |a, b| a.max(*b));
+    let brightest = f64::from(brightest);
+    if storage == Storage::F32 || brightest == 0.0 || (DIM..=MAX_STORED).contains(&brightest) {
+        return 1.0;
+    }
+    libm::exp2(libm::ceil(libm::log2(brightest / MAX_STORED)))
+}
+
+/// All mips before rounding.
+struct Mips {
+    /// Numbers a texel: red, green, blue, squared luminance, indicators of levels from 1 on, their light by colour.
+    channels: usize,
+    /// One entry a mip.
+    texels: Vec<Vec<f64>>,
+}
+
+fn filtered_mips(
+    image: &EnvironmentImage,
+    options: &EnvironmentOptions,
+    params: &EnvironmentParams,
+    progress: &dyn Progress,
+) -> Mips {
+    let more = params.levels.len() - 1;
+    let extra = more * if params.coloured { 4 } else { 1 };
+    let sizes: Vec<u32> = (0..params.mips()).map(|mip| params.face_size >> mip).collect();
+    let texels = sizes.iter().map(|size| 6 * u64::from(size * size)).sum();
+    progress.begin("filter", texels);
+    let all = |image: &EnvironmentImage| extra_channels(image, params, extra);
+    let own = all(image);
+    let mut first = BASE_CHANNELS + extra;
+    let reduction = options.reduction(image);
+    let small = (reduction > 1).then(|| image.reduced(reduction));
+    let tree = match &small {
+        Some(small) => Tree::new(small, extra, &all(small), more > 0),
+        None => Tree::new(image, extra, &own, more > 0),
+    };
+    first = first.next_multiple_of(4);
+    let mut mips = Mips { channels: first, texels: vec![first_mip(image, params.face_size, &own, extra, first)] };
+    drop(own);
+    progress.advance(6 * u64::from(params.face_size).pow(2));
+    for (size, alpha) in sizes.iter().zip(&params.roughness).skip(1) {
+        let lobe = Lobe::new(params.kernel, *alpha);
+        mips.texels.push(filter_mip(&tree, &lobe, *size, options.max_error, progress));
+    }
+    progress.end();
+    mips
+}
+
+/// Indicators of levels from 1 on, then, where levels have colours, R, G and B of each level's light.
+fn extra_channels(image: &EnvironmentImage, params: &EnvironmentParams, extra: usize) -> Vec<f32> {
+    let mut all = vec![0.0; image.pixels.len() * extra];
+    let more = params.levels.len() - 1;
+    if more == 0 {
+        return all;
+    }
+    for (pixel, out) in all.chunks_exact_mut(extra).enumerate() {
+        let l = image.luminance(pixel);
+        shares(&params.levels, l, &mut out[..more]);
+        if params.coloured && l > 0.0 {
+            for k in 0..more {
+                for c in 0..3 {
+                    let colour = f64::from(image.pixels[pixel][c]) / l;
+                    out[more + 3 * k + c] = (f64::from(out[k]) * colour) as f32;
+                }
+            }
+        }
+    }
+    all
+}
+
+/// Means over the texels of the first mip, which is the source itself seen through a cube.
+fn first_mip(image: &EnvironmentImage, size: u32, extra: &[f32], extra_count: usize, channels: usize) -> Vec<f64> {
+    let mut pixels = vec![0.0f32; image.pixels.len() * channels];
+    for (pixel, out) in pixels.chunks_exact_mut(channels).enumerate() {
+        out[..3].copy_from_slice(&image.pixels[pixel]);
+        out[3] = image.luminance(pixel).powi(2) as f32;
+        out[BASE_CHANNELS..BASE_CHANNELS + extra_count].copy_from_slice(&extra[pixel * extra_count..][..extra_count]);
+    }
+    Resampling::new(image, size).apply(channels, &pixels)
+}
+
+/// |luminance over all texels of the first mip by solid angle, over the source's − 1|.
+fn energy_error(image: &EnvironmentImage, texels: &[f64], channels: usize) -> f64 {
+    let size = ((texels.len() / channels / 6) as f64).sqrt() as u32;
+    let whole = luminance(image.mean()) * 4.0 * std::f64::consts::PI;
+    let mut sum = 0.0;
+    for (k, texel) in texels.chunks_exact(channels).enumerate() {
+        let k = k as u32 % (size * size);
+        sum += luminance([texel[0], texel[1], texel[2]]) * texel_solid_angle_sr(k % size, k / size, size);
+    }
+    if whole > 0.0 { (sum / whole - 1.0).abs() } else { sum }
+}
+
+/// Rounds all mips into the textures.
+fn round(mips: &Mips, environment: &mut Environment) {
+    let params = &environment.params;
+    let more = params.levels.len() - 1;
+    let layers = params.indicator_layers() as usize;
+    for texels in &mips.texels {
+        let count = texels.len() / mips.channels;
+        let mut indicators = vec![0u32; layers * count * 4];
+        let mut colours = vec![0u32; if params.coloured { more * count } else { 0 }];
+        for (k, texel) in texels.chunks_exact(mips.channels).enumerate() {
+            let rgba = [texel[0], texel[1], texel[2], texel[3].max(0.0).sqrt()];
+            quantise::radiance(rgba, params.radiance_scale, params.storage, &mut environment.radiance);
+            let shares = &texel[BASE_CHANNELS..BASE_CHANNELS + more];
+            // Blocks taken as points may give a few 1e-4 more than the whole.
+            let whole = shares.iter().sum::<f64>().max(1.0);
+            let shares: Vec<f64> = shares.iter().map(|share| share.max(0.0) / whole).collect();
+            for (i, bits) in quantise::indicators(&shares, params.storage).into_iter().enumerate() {
+                indicators[((i / 4) * count + k) * 4 + i % 4] = bits;
+            }
+            if params.coloured {
+                for i in 0..more {
+                    let light = &texel[BASE_CHANNELS + more + 3 * i..][..3];
+                    colours[i * count + k] = quantise::shared_exponent(unit_luminance([light[0], light[1], light[2]]));
+                }
+            }
+        }
+        for bits in indicators {
+            match params.storage {
+                Storage::F32 => environment.indicators.extend(bits.to_le_bytes()),
+                Storage::F16 | Storage::Unorm16 => environment.indicators.extend((bits as u16).to_le_bytes()),
+            }
+        }
+        environment.colours.extend(colours);
+    }
+}
+
+/// A colour scaled to luminance 1; white where there is no light.
+fn unit_luminance(rgb: [f64; 3]) -> [f64; 3] {
+    let y = luminance(rgb);
+    if y > 0.0 { rgb.map(|c| c / y) } else { [1.0; 3] }
+}
+
+fn check_error(environment: &Environment) -> Result<()> {
+    let params = &environment.params;
+    for (mip, measured) in params.measured.mips.iter().enumerate().skip(1) {
+        let alpha = params.roughness[mip];
+        let most = params.max_error * if alpha < SHARP { OF_SHARP } else { 1.0 };
+        if measured.rmse > most {
+            return Err(BakeError::LimitExceeded(format!(
+                "mip {mip} (α {alpha:.4}): expected a root mean square error of {most} of the mean at most, found {:.5}; \
+                 raise --max-error, or give --format f32",
+                measured.rmse
+            )));
+        }
+    }
+    Ok(())
+}

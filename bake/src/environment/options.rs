@@ -1,0 +1,147 @@
+//! What an environment is asked to be, and which askings cannot work.
+
+use super::image::EnvironmentImage;
+use crate::error::{BakeError, Result};
+use glint_formats::environment::{Kernel, LevelChoice, MAX_FACE_SIZE, MAX_LEVELS, Storage};
+
+/// Smallest edge of a face.
+pub const MIN_FACE_SIZE: u32 = 4;
+/// Error of radiance that can be asked for; sums in single precision do not carry smaller ones.
+pub const ERROR_RANGE: (f64, f64) = (1e-4, 0.2);
+/// Darkest radiance that the paper's levels tell apart, by default.
+pub const DEFAULT_FLOOR: f64 = 1e-3;
+
+/// How many radiance levels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LevelCount {
+    /// So many, 1 to [`MAX_LEVELS`]. With one, every lit facet reflects the mean radiance.
+    Exactly(u32),
+    /// The fewest, 2 or more, whose mean relative error of the second moment is this or less.
+    Fewest(f64),
+}
+
+/// Options of the environment bake.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnvironmentOptions {
+    /// Edge of a face of the first mip, a power of two.
+    pub face_size: u32,
+    /// Edge of a face of the last mip, a power of two.
+    pub min_face_size: u32,
+    /// Radiance levels.
+    pub levels: LevelCount,
+    /// How they are chosen.
+    pub level_choice: LevelChoice,
+    /// Radiance below this is taken as this by the paper's choice of levels.
+    pub floor: f64,
+    /// Whether levels have colours of their own.
+    pub coloured: bool,
+    /// Root mean square error of every mip over its mean.
+    pub max_error: f64,
+    /// Filter.
+    pub kernel: Kernel,
+    /// Storage.
+    pub storage: Storage,
+    /// Texels a mip that are compared with sums over the source, at most.
+    pub measured_texels: u32,
+}
+
+impl Default for EnvironmentOptions {
+    fn default() -> EnvironmentOptions {
+        EnvironmentOptions {
+            face_size: 256,
+            min_face_size: 1,
+            levels: LevelCount::Exactly(4),
+            level_choice: LevelChoice::Optimal,
+            floor: DEFAULT_FLOOR,
+            coloured: false,
+            max_error: 0.005,
+            kernel: Kernel::Ndf,
+            storage: Storage::F16,
+            measured_texels: 16,
+        }
+    }
+}
+
+impl EnvironmentOptions {
+    /// Number of mips.
+    pub fn mips(&self) -> u32 {
+        self.face_size.ilog2() - self.min_face_size.ilog2() + 1
+    }
+
+    /// Checks what can be checked without an image.
+    ///
+    /// # Errors
+    /// [`BakeError::BadOption`] names the flag, what was found and what would work.
+    pub fn validate(&self) -> Result<()> {
+        let size = self.face_size;
+        if !(size.is_power_of_two() && (MIN_FACE_SIZE..=MAX_FACE_SIZE).contains(&size)) {
+            return bad(format!("--face-size: expected a power of two, {MIN_FACE_SIZE} to {MAX_FACE_SIZE}, found {size}"));
+        }
+        let least = self.min_face_size;
+        if !(least.is_power_of_two() && least <= size) {
+            return bad(format!("--min-face-size: expected a power of two up to {size}, found {least}"));
+        }
+        match self.levels {
+            LevelCount::Exactly(count) if !(1..=MAX_LEVELS as u32).contains(&count) => {
+                return bad(format!("--levels: expected 1 to {MAX_LEVELS}, or auto, found {count}"));
+            }
+            LevelCount::Fewest(error) if !(error > 0.0 && error.is_finite()) => {
+                return bad(format!("--max-moment-error: expected a number above 0, found {error}"));
+            }
+            _ => {}
+        }
+        if self.coloured && self.levels == LevelCount::Exactly(1) {
+            return bad("--coloured: one level has no colours of its own; give --levels 2 or more".into());
+        }
+        if matches!(self.levels, LevelCount::Fewest(_)) && self.level_choice == LevelChoice::LogUniform {
+            return bad("--levels auto: the least count is known for --level-choice optimal only".into());
+        }
+        let (low, high) = ERROR_RANGE;
+        if !(low..=high).contains(&self.max_error) {
+            return bad(format!("--max-error: expected {low} to {high}, found {}", self.max_error));
+        }
+        if !(self.floor > 0.0 && self.floor.is_finite()) {
+            return bad(format!("--floor: expected a radiance above 0, found {}", self.floor));
+        }
+        Ok(())
+    }
+
+    /// Largest number of levels that these options may lead to.
+    fn most_levels(&self) -> u64 {
+        match self.levels {
+            LevelCount::Exactly(count) => u64::from(count),
+            LevelCount::Fewest(_) => MAX_LEVELS as u64,
+        }
+    }
+
+    /// Bytes of the finished textures, at most.
+    pub fn texture_bytes(&self) -> u64 {
+        let texels: u64 = (0..self.mips()).map(|mip| 6 * u64::from(self.face_size >> mip).pow(2)).sum();
+        let component = if self.storage == Storage::F32 { 4 } else { 2 };
+        let levels = self.most_levels() - 1;
+        let colours = if self.coloured { 4 * levels } else { 0 };
+        texels * (4 * component * (1 + levels.div_ceil(4)) + colours)
+    }
+
+    /// Bytes that the bake holds at a time, roughly.
+    pub fn working_bytes(&self, image: &EnvironmentImage) -> u64 {
+        let pixels = image.pixels.len() as u64;
+        let levels = self.most_levels() - 1;
+        let channels = (4 + levels * if self.coloured { 4 } else { 1 }).next_multiple_of(4);
+        let texels = 8 * u64::from(self.face_size).pow(2);
+        // Pixels with all channels, pieces of the resampling, the tree, and texels in f64.
+        let factor = u64::from(self.reduction(image));
+        let kept = pixels / (factor * factor);
+        pixels * (12 + 4 * channels + 8) + 24 * texels + 2 * kept * (48 + 4 * channels) + texels * channels * 16
+    }
+
+    /// By how much the source is reduced for the filtered mips: a pixel stays smaller than an eighth of the lobe's
+    /// face texels are wide. The first mip sees all pixels.
+    pub fn reduction(&self, image: &EnvironmentImage) -> u32 {
+        (image.width / (8 * self.face_size)).max(1)
+    }
+}
+
+fn bad(message: String) -> Result<()> {
+    Err(BakeError::BadOption(message))
+}

@@ -1,0 +1,112 @@
+//! Rounds filtered texels to what a texture stores.
+//!
+//! The paper stores K indicators as half floats or UNorm. Stored separately, rounded numbers do not add up to 1. Here
+//! level 0 is not stored: it is what the others leave of 1, so the partition of unity holds exactly in any format, and
+//! after any filtering. All that is asked of the others is that they do not exceed 1: where rounding makes them, the
+//! largest gives way, by a unit in its last place at a time.
+
+use glint_formats::environment::Storage;
+use half::f16;
+
+/// Bytes of a radiance texel: R, G, B and root mean square luminance, each over `scale`.
+pub fn radiance(texel: [f64; 4], scale: f64, storage: Storage, out: &mut Vec<u8>) {
+    for value in texel {
+        let value = (value / scale) as f32;
+        match storage {
+            Storage::F32 => out.extend(value.to_le_bytes()),
+            Storage::F16 | Storage::Unorm16 => out.extend(f16::from_f32(value.min(65504.0)).to_le_bytes()),
+        }
+    }
+}
+
+/// Bits of indicators that add up to at most 1 once decoded. `shares` are not negative.
+pub fn indicators(shares: &[f64], storage: Storage) -> Vec<u32> {
+    let mut bits: Vec<u32> = shares.iter().map(|share| encoded(share.min(1.0), storage)).collect();
+    while bits.iter().map(|bits| decoded(*bits, storage)).sum::<f64>() > 1.0 {
+        let Some(largest) = bits.iter_mut().max_by(|a, b| decoded(**a, storage).total_cmp(&decoded(**b, storage))) else {
+            break;
+        };
+        *largest -= 1; // The bits of positive floats are in order, so this is the next smaller number.
+    }
+    bits
+}
+
+fn encoded(value: f64, storage: Storage) -> u32 {
+    match storage {
+        Storage::F16 => u32::from(f16::from_f32(value as f32).to_bits()),
+        Storage::F32 => (value as f32).to_bits(),
+        Storage::Unorm16 => (value * 65535.0).round() as u32,
+    }
+}
+
+/// What a GPU reads.
+pub fn decoded(bits: u32, storage: Storage) -> f64 {
+    match storage {
+        Storage::F16 => f16::from_bits(bits as u16).to_f64(),
+        Storage::F32 => f64::from(f32::from_bits(bits)),
+        Storage::Unorm16 => f64::from(bits) / 65535.0,
+    }
+}
+
+/// A colour as E5B9G9R9 (Vulkan specification, "Conversion to shared exponent"): 9 bits a channel and one exponent.
+pub fn shared_exponent(rgb: [f64; 3]) -> u32 {
+    const BIAS: i32 = 15;
+    const BITS: i32 = 9;
+    let largest_value = 511.0 / 512.0 * 65536.0;
+    let rgb = rgb.map(|value| value.clamp(0.0, largest_value));
+    let largest = rgb.into_iter().fold(0.0, f64::max);
+    let power = if largest > 0.0 { libm::ilogb(largest) } else { -BIAS - 1 };
+    let mut exponent = power.max(-BIAS - 1) + 1 + BIAS;
+    let unit = |exponent: i32| libm::ldexp(1.0, exponent - BIAS - BITS);
+    if (largest / unit(exponent)).round() >= 512.0 {
+        exponent += 1;
+    }
+    let [r, g, b] = rgb.map(|value| (value / unit(exponent)).round() as u32);
+    (exponent as u32) << 27 | b << 18 | g << 9 | r
+}
+
+/// The colour that E5B9G9R9 bits stand for.
+pub fn from_shared_exponent(bits: u32) -> [f32; 3] {
+    let unit = libm::ldexpf(1.0, (bits >> 27) as i32 - 24);
+    [0, 9, 18].map(|shift| (bits >> shift & 511) as f32 * unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stored_indicators_never_exceed_one() {
+        let mut state = 1u64;
+        let mut unit = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / (1u64 << 24) as f64
+        };
+        for storage in [Storage::F16, Storage::F32, Storage::Unorm16] {
+            for count in [1, 3, 7, 15] {
+                for _ in 0..2000 {
+                    let raw: Vec<f64> = (0..count).map(|_| unit().powi(6)).collect();
+                    let whole: f64 = raw.iter().sum();
+                    let shares: Vec<f64> = raw.iter().map(|share| share / whole).collect();
+                    let read: Vec<f64> = indicators(&shares, storage).iter().map(|b| decoded(*b, storage)).collect();
+                    assert!(read.iter().sum::<f64>() <= 1.0, "{storage:?} {read:?}");
+                    for (read, share) in read.iter().zip(&shares) {
+                        let step = if storage == Storage::Unorm16 { 1.6e-5 } else { share * 1e-3 + 6e-8 };
+                        assert!((read - share).abs() <= step, "{storage:?} {share} {read}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn shared_exponents_keep_nine_bits() {
+        for rgb in [[1.0, 0.5, 0.25], [4.7, 0.0, 1e-3], [0.0, 0.0, 13.85], [1023.9, 2.0, 511.5], [0.0; 3]] {
+            let read = from_shared_exponent(shared_exponent(rgb)).map(f64::from);
+            let largest = rgb.into_iter().fold(0.0, f64::max);
+            for c in 0..3 {
+                assert!((read[c] - rgb[c]).abs() <= largest / 500.0, "{rgb:?} {read:?}");
+            }
+        }
+    }
+}

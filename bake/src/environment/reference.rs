@@ -1,0 +1,150 @@
+//! Filtered environments from the definition, in f64: a sum over every pixel of the source image.
+//!
+//! Radiance is constant over a pixel's rectangle of longitude and latitude. The kernel is written with the half vector, as
+//! the paper has it (section 3.4, N = V = R), and integrated over each pixel by the midpoint rule on parts that are small
+//! against the lobe and against the distance. Weights are normalised by their own sum.
+
+use super::image::{EnvironmentImage, direction};
+use glam::DVec3;
+use glint_formats::environment::Kernel;
+use std::f64::consts::PI;
+
+/// Parts of a pixel are at most this part of α wide in the core of a lobe,
+const PER_ALPHA: f64 = 16.0;
+/// and this part of the distance to its middle outside.
+const PER_DISTANCE: f64 = 40.0;
+
+/// A filtered value.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Filtered {
+    /// Radiance.
+    pub rgb: [f64; 3],
+    /// Luminance.
+    pub luminance: f64,
+    /// Mean of squared luminance.
+    pub square: f64,
+}
+
+/// GGX density of facets at a cosine.
+pub fn ggx(cos_h: f64, alpha: f64) -> f64 {
+    let a = alpha * alpha;
+    a / (PI * (cos_h * cos_h * (a - 1.0) + 1.0).powi(2))
+}
+
+/// Weight of light from `l` in a texel towards `n`.
+pub fn kernel_weight(kernel: Kernel, n: DVec3, l: DVec3, alpha: f64) -> f64 {
+    let cos_l = n.dot(l);
+    if cos_l <= 0.0 {
+        return 0.0;
+    }
+    let h = (n + l).normalize();
+    let facets = ggx(n.dot(h), alpha);
+    match kernel {
+        Kernel::GgxNl => facets * cos_l,
+        Kernel::Ndf => {
+            let tangent2 = (1.0 - cos_l * cos_l).max(0.0) / (cos_l * cos_l);
+            facets * 2.0 / (1.0 + (1.0 + alpha * alpha * tangent2).sqrt())
+        }
+    }
+}
+
+/// Calls `add` with index, weight and solid angle of every pixel that has any weight.
+fn over_pixels(image: &EnvironmentImage, kernel: Kernel, n: DVec3, alpha: f64, mut add: impl FnMut(usize, f64)) {
+    let (width, height) = (f64::from(image.width), f64::from(image.height));
+    let tall = PI / height;
+    for y in 0..image.height {
+        let latitude = PI * (0.5 - (f64::from(y) + 0.5) / height);
+        let wide = 2.0 * PI / width * libm::cos(latitude);
+        let sines = [image.sine(f64::from(y)), image.sine(f64::from(y + 1))];
+        let centre_sine = 0.5 * (sines[0] + sines[1]);
+        for x in 0..image.width {
+            let longitude = 2.0 * PI * ((f64::from(x) + 0.5) / width - 0.5);
+            let centre = direction(longitude, centre_sine);
+            let distance = (centre - n).length();
+            let fine = (alpha / PER_ALPHA).max((distance - tall.max(wide)).max(0.0) / PER_DISTANCE);
+            let parts_x = ((wide / fine).ceil() as u32).max(1);
+            let parts_y = ((tall / fine).ceil() as u32).max(1);
+            let mut sum = 0.0;
+            for i in 0..parts_x {
+                let part = (f64::from(x) + (f64::from(i) + 0.5) / f64::from(parts_x)) / width;
+                for j in 0..parts_y {
+                    let sine = sines[0] + (sines[1] - sines[0]) * (f64::from(j) + 0.5) / f64::from(parts_y);
+                    sum += kernel_weight(kernel, n, direction(2.0 * PI * (part - 0.5), sine), alpha);
+                }
+            }
+            if sum > 0.0 {
+                add((y * image.width + x) as usize, sum / f64::from(parts_x * parts_y) * image.solid_angle_sr(y));
+            }
+        }
+    }
+}
+
+/// What a texel towards `n` should hold.
+pub fn filtered(image: &EnvironmentImage, kernel: Kernel, n: DVec3, alpha: f64) -> Filtered {
+    let mut sum = Filtered::default();
+    let mut whole = 0.0;
+    over_pixels(image, kernel, n, alpha, |pixel, weight| {
+        let l = image.luminance(pixel);
+        (0..3).for_each(|c| sum.rgb[c] += weight * f64::from(image.pixels[pixel][c]));
+        sum.luminance += weight * l;
+        sum.square += weight * l * l;
+        whole += weight;
+    });
+    Filtered { rgb: sum.rgb.map(|c| c / whole), luminance: sum.luminance / whole, square: sum.square / whole }
+}
+
+/// Mean of ⟨L²⟩ when every pixel's luminance is shared between two of `levels` (Eq. 19), and the exact one.
+pub fn second_moments(
+    image: &EnvironmentImage,
+    kernel: Kernel,
+    n: DVec3,
+    alpha: f64,
+    all_levels: &[Vec<f64>],
+) -> (Vec<f64>, f64) {
+    let mut with_levels = vec![0.0; all_levels.len()];
+    let (mut exact, mut whole) = (0.0, 0.0);
+    over_pixels(image, kernel, n, alpha, |pixel, weight| {
+        let l = image.luminance(pixel);
+        whole += weight;
+        exact += weight * l * l;
+        for (sum, levels) in with_levels.iter_mut().zip(all_levels) {
+            let mut below = 0;
+            while below + 2 < levels.len() && levels[below + 1] <= l {
+                below += 1;
+            }
+            let (low, high) = (levels[below], levels[below + 1]);
+            *sum += weight * (l * l + (l - low) * (high - l));
+        }
+    });
+    (with_levels.into_iter().map(|sum| sum / whole).collect(), exact / whole)
+}
+
+/// Mean radiance over the part of the sphere that texel (i, j) of a face covers, by `samples`² points.
+pub fn texel_mean(image: &EnvironmentImage, face: usize, i: u32, j: u32, size: u32, samples: u32) -> Filtered {
+    let mut sum = Filtered::default();
+    let mut whole = 0.0;
+    for b in 0..samples {
+        for a in 0..samples {
+            let place = |k: u32, part: u32| {
+                2.0 * (f64::from(k) + (f64::from(part) + 0.5) / f64::from(samples)) / f64::from(size) - 1.0
+            };
+            let ray = super::cube::face_direction(face, place(i, a), place(j, b));
+            let weight = ray.length().powi(-3);
+            let pixel = pixel_of(image, ray.normalize());
+            let l = image.luminance(pixel);
+            (0..3).for_each(|c| sum.rgb[c] += weight * f64::from(image.pixels[pixel][c]));
+            sum.luminance += weight * l;
+            sum.square += weight * l * l;
+            whole += weight;
+        }
+    }
+    Filtered { rgb: sum.rgb.map(|c| c / whole), luminance: sum.luminance / whole, square: sum.square / whole }
+}
+
+/// Index of the pixel in a direction.
+pub fn pixel_of(image: &EnvironmentImage, d: DVec3) -> usize {
+    let u = libm::atan2(d.x, -d.z) / (2.0 * PI) + 0.5;
+    let v = 0.5 - libm::asin(d.y.clamp(-1.0, 1.0)) / PI;
+    let cell = |part: f64, count: u32| ((part * f64::from(count)) as u32).min(count - 1);
+    (cell(v, image.height) * image.width + cell(u, image.width)) as usize
+}

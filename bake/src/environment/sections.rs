@@ -1,0 +1,66 @@
+//! An environment as sections of a pack, and back.
+
+use super::tables::Environment;
+use crate::error::{BakeError, Result};
+use crate::pack_access::{bytes, names_with, parameters, records};
+use glint_formats::environment::{ALBEDO, COLOURS, EnvironmentParams, INDICATORS, PARAMS, RADIANCE};
+use glint_formats::{Codec, Pack, Section};
+
+/// The sections of an environment under `name`, compressed when `codec` says so.
+pub fn to_sections(name: &str, environment: &Environment, codec: Codec) -> Vec<Section> {
+    let params = &environment.params;
+    let mut sections = vec![
+        Section::parameters(PARAMS, name, params),
+        Section::texture(RADIANCE, name, params.radiance_resource(), environment.radiance.clone()),
+    ];
+    if params.indicator_layers() > 0 {
+        let resource = params.indicators_resource();
+        sections.push(Section::texture(INDICATORS, name, resource, environment.indicators.clone()));
+    }
+    if params.coloured {
+        let payload = bytemuck::cast_slice(&environment.colours).to_vec();
+        sections.push(Section::texture(COLOURS, name, params.colours_resource(), payload));
+    }
+    let payload = bytemuck::cast_slice(&environment.albedo).to_vec();
+    sections.push(Section::texture(ALBEDO, name, params.albedo_resource(), payload));
+    for section in &mut sections {
+        section.codec = codec;
+    }
+    sections
+}
+
+/// Reads the environment `name`. The pack must have passed verification; errors name what is missing or damaged.
+pub fn from_pack(pack: &Pack, name: &str) -> Result<Environment> {
+    let params: EnvironmentParams = parameters(pack, PARAMS, name)?;
+    let mut environment = Environment {
+        radiance: bytes(pack, RADIANCE, name)?,
+        indicators: Vec::new(),
+        colours: Vec::new(),
+        albedo: records(pack, ALBEDO, name)?,
+        params,
+    };
+    let params = &environment.params;
+    let mut lengths = vec![
+        (params.radiance_resource(), environment.radiance.len()),
+        (params.albedo_resource(), 2 * environment.albedo.len()),
+    ];
+    if params.indicator_layers() > 0 {
+        environment.indicators = bytes(pack, INDICATORS, name)?;
+        lengths.push((params.indicators_resource(), environment.indicators.len()));
+    }
+    if params.coloured {
+        environment.colours = records(pack, COLOURS, name)?;
+        lengths.push((params.colours_resource(), 4 * environment.colours.len()));
+    }
+    for (resource, found) in lengths {
+        if resource.byte_len() != Ok(Some(found as u64)) {
+            return Err(BakeError::BadInput(format!("'{name}': expected {resource:?}, found {found} bytes")));
+        }
+    }
+    Ok(environment)
+}
+
+/// Names of the environments in a pack.
+pub fn environments(pack: &Pack) -> Vec<&str> {
+    names_with(pack, PARAMS)
+}
