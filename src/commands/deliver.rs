@@ -74,6 +74,9 @@ fn summary(report: &Report, outcome: WriteOutcome) -> String {
     for dictionary in &report.dictionaries {
         lines.push(format!("{}: {}", dictionary.name, dictionary.accuracy_line()));
     }
+    for environment in &report.environments {
+        lines.push(format!("{}: {}", environment.name, environment.accuracy_line()));
+    }
     let outcome = match outcome {
         WriteOutcome::Written => "written",
         WriteOutcome::Unchanged => "unchanged",

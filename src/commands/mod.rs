@@ -3,6 +3,7 @@
 mod deliver;
 mod demo;
 mod dictionary;
+mod environment;
 mod info;
 mod ndf_maps;
 mod preview;
@@ -28,6 +29,7 @@ pub struct Bake {
 enum Command {
     NdfMaps(Box<ndf_maps::Args>),
     Dictionary(dictionary::Args),
+    Environment(environment::Args),
     Preview(preview::Args),
     Report(report::Args),
     Demo(demo::Args),
@@ -39,6 +41,7 @@ pub fn bake(cli: Bake) -> Result<(), Failure> {
     match cli.command {
         Command::NdfMaps(args) => ndf_maps::run(*args, terminal),
         Command::Dictionary(args) => dictionary::run(&args, terminal),
+        Command::Environment(args) => environment::run(&args, terminal),
         Command::Preview(args) => preview::run(&args, terminal),
         Command::Report(args) => report::run(&args, terminal),
         Command::Demo(args) => demo::run(&args, terminal),

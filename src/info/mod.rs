@@ -1,11 +1,13 @@
 //! What a pack holds, as data: the one description that text, JSON, reports and summaries are made from.
 
 mod dictionary;
+mod environment;
 mod material;
 pub mod plot;
 mod text;
 
 pub use dictionary::DictionaryInfo;
+pub use environment::EnvironmentInfo;
 pub use material::MaterialInfo;
 pub use text::{kib, percent};
 
@@ -44,6 +46,8 @@ pub struct Report {
     pub layers: Vec<LayeredMaterial>,
     /// Slope dictionaries.
     pub dictionaries: Vec<DictionaryInfo>,
+    /// Environments.
+    pub environments: Vec<EnvironmentInfo>,
     /// Where the pack comes from.
     pub provenance: Vec<Provenance>,
     #[serde(skip)]
@@ -84,6 +88,7 @@ impl Report {
             materials: Vec::new(),
             layers: Vec::new(),
             dictionaries: Vec::new(),
+            environments: Vec::new(),
             provenance: Vec::new(),
             pack: None,
         }
@@ -102,6 +107,7 @@ impl Report {
                 .collect();
             report.layers = decode_all(&pack, LAYERS);
             report.dictionaries = DictionaryInfo::all_of(&pack);
+            report.environments = EnvironmentInfo::all_of(&pack);
             report.provenance = decode_all(&pack, PROVENANCE);
         }
         report.pack = Some(pack);

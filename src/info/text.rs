@@ -66,6 +66,10 @@ impl Report {
             line(&mut out, String::new());
             out.push_str(&dictionary.to_text());
         }
+        for environment in &self.environments {
+            line(&mut out, String::new());
+            out.push_str(&environment.to_text());
+        }
         for provenance in &self.provenance {
             line(&mut out, String::new());
             provenance_lines(provenance, &mut out);
@@ -79,11 +83,12 @@ fn section_line(section: &SectionEntry, label_width: usize) -> String {
     let resource = match section.resource {
         Resource::Parameters => "parameters".into(),
         Resource::Buffer { stride, count } => format!("{count} × {stride} bytes"),
-        Resource::Texture { vk_format, width, height, layers, mips, .. } => {
+        Resource::Texture { vk_format, width, height, layers, faces, mips } => {
             let format = vk_format::name(vk_format).map_or(format!("format {vk_format}"), str::to_owned);
             let layers = if layers > 1 { format!(" × {layers} layers") } else { String::new() };
             let mips = if mips > 1 { format!(", {mips} mips") } else { String::new() };
-            format!("{format} {width} × {height}{layers}{mips}")
+            let cube = if faces == 6 { " × 6 faces" } else { "" };
+            format!("{format} {width} × {height}{cube}{layers}{mips}")
         }
     };
     let stored = match section.codec {

@@ -8,7 +8,7 @@ use super::image::{EnvironmentImage, luminance};
 use super::kernel::{Lobe, roughness_of_mips};
 use super::levels::{Seen, fewest, log_uniform, optimal, shares};
 use super::options::{EnvironmentOptions, LevelCount};
-use super::prefilter::filter_mip;
+use super::prefilter::{OF_SHARP, SHARP, filter_mip};
 use super::quantise;
 use super::quality;
 use super::tables::Environment;
@@ -22,11 +22,6 @@ use half::f16;
 const MAX_STORED: f64 = 32768.0;
 /// Images whose brightest pixel is below this are scaled up, so that half floats keep their digits.
 const DIM: f64 = 1.0 / 64.0;
-
-/// Mips below this roughness see single pixels, and may have [`OF_SHARP`] times the error.
-const SHARP: f64 = 0.04;
-/// See [`SHARP`].
-const OF_SHARP: f64 = 4.0;
 
 /// Bakes `image`, of which `negative_pixels` were mended.
 ///

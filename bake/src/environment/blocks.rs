@@ -3,15 +3,15 @@
 //! With s the distance of a texel's direction from a block's mean, u = a + b s²/2 and k = (a/u)², t over the block's light
 //! has a variance of at most s² e + 0.4 e² (e the block's spread). A point at the mean is wrong by
 //!
-//! - ½ k_tt Var t = 3 (b/u)² k Var t of the block's light (its first moment about the mean is 0),
+//! - ½ k_tt Var t = 3 (b/u)² k Var t of the block's light (its first moment about the mean is 0), most of which
+//!   [`super::filter_sum`] puts right,
 //! - the same with the derivatives of the last factor, cosine or masking,
 //! - |k_s| times the first moments that colour, squared luminance and indicators have about the mean of luminance.
 //!
-//! A block is taken when the first two are below a share of what it gives, or when all are below a share of what the
-//! texel will have. Pixels are constant; one that cannot be taken whole is divided evenly.
+//! A block is taken when the first two are below a share of what it gives or of what the texel will have, and the last
+//! below a share of what the texel will have. Pixels are constant; one that cannot be taken whole is divided evenly.
 
 use super::filter_sum::{Directions, LANES, Points};
-use super::image::direction;
 use super::kernel::Lobe;
 use super::tree::{Block, Tree, longitude};
 use glam::Vec3;
@@ -19,6 +19,14 @@ use glint_formats::environment::Kernel;
 
 /// Most parts of a pixel along one side.
 const MAX_PARTS: f32 = 16.0;
+
+/// What first moments of colour and squared luminance may do, in units of a texel's allowance. Theirs have any sign, so
+/// they do not add up as curvature does.
+const OF_COLOUR: f32 = 40.0;
+/// The same of indicators, whose moments are estimates from above.
+const OF_LEVELS: f32 = 160.0;
+/// Blocks of a first look are no larger, so that even a lobe as wide as the hemisphere sees where it ends.
+const LOOK_RADIUS: f32 = 0.3;
 
 /// Directions that share their blocks.
 #[derive(Clone, Copy, Debug)]
@@ -72,14 +80,21 @@ impl Bound {
         Bound { a, b, kernel: lobe.kernel, alpha: a.sqrt(), steepest }
     }
 
-    /// Gathers the points of a group. With an allowance of 0 a texel, only shares of blocks count.
-    pub fn gather(&self, tree: &Tree, group: &Group, allowance: &Allowance, points: &mut Points) {
+    /// Gathers the points of a group among the blocks of `stack` and below, and empties it. Blocks that the group may
+    /// not take, but that are no larger than `leave`, are put off: smaller groups within may take them.
+    pub fn gather(
+        &self,
+        tree: &Tree,
+        group: &Group,
+        allowance: &Allowance,
+        stack: &mut Vec<u32>,
+        points: &mut Points,
+        mut put_off: Option<(f32, &mut Vec<u32>)>,
+    ) {
         points.clear();
-        let mut stack = vec![0u32];
         while let Some(index) = stack.pop() {
             let block = &tree.blocks[index as usize];
-            let place = Vec3::from(block.mean);
-            let distance = place.distance(group.centre);
+            let distance = Vec3::from(block.mean).distance(group.centre);
             let reach = block.radius + group.radius;
             let near = (distance - reach).max(0.0);
             // All of the block lies below every texel's horizon.
@@ -91,6 +106,12 @@ impl Bound {
                 points.places.push([block.mean[0], block.mean[1], block.mean[2], block.spread]);
                 let first = index as usize * tree.channels;
                 points.sums.extend_from_slice(&tree.sums[first..first + tree.channels]);
+                continue;
+            }
+            if let Some((leave, list)) = &mut put_off
+                && block.radius <= *leave
+            {
+                list.push(index);
             } else if block.second == 0 {
                 divide(tree, index, parts.min(MAX_PARTS).ceil(), points);
             } else {
@@ -109,7 +130,12 @@ impl Bound {
         let e = block.spread;
         let core = 0.4 * e * e;
         let variance = s2 * e + core;
-        let (edge_slope, edge_curve) = self.edge(1.0 - 0.5 * far2);
+        let [light, square] = allowance.of_texel;
+        if light == 0.0 && block.radius > LOOK_RADIUS {
+            return 2.0;
+        }
+        // A first look at how bright a texel is need not follow the horizon, where there is next to no weight.
+        let (edge_slope, edge_curve) = if light > 0.0 { self.edge(1.0 - 0.5 * far2) } else { (0.0, 0.0) };
         // 3 (b/u)² is ¾ slope². The core's part peaks at s = 0, the rest at the steepest place.
         let curve = 0.75 * (slope * slope * s2 * e + first_slope * first_slope * core);
         let mut relative = curve + (slope * edge_slope + 0.5 * edge_curve) * variance;
@@ -120,10 +146,11 @@ impl Bound {
         let peak = self.a / (self.a + 0.5 * self.b * near2);
         let peak = peak * peak;
         let gradient = peak * (first_slope + edge_slope) * far.min(1.5);
-        let [light, square] = allowance.of_texel;
-        let moments = gradient * block.colour_moment.max(0.25 * block.level_moment);
         let fits = (relative <= allowance.of_block || peak * relative * block.light <= light)
-            && (light == 0.0 || (moments <= 4.0 * light && gradient * block.square_moment <= 4.0 * square));
+            && (light == 0.0
+                || (gradient * block.colour_moment <= OF_COLOUR * light
+                    && gradient * block.level_moment <= OF_LEVELS * light
+                    && gradient * block.square_moment <= OF_COLOUR * square));
         if fits || block.light == 0.0 {
             return 1.0;
         }
@@ -163,14 +190,19 @@ fn divide(tree: &Tree, index: u32, parts: f32, points: &mut Points) {
     let [count_x, count_y] = [wide, tall].map(|side| (parts * side / longer).ceil().max(1.0) as u32);
     let spread = |side: f64, count: u32| (side / f64::from(count)).powi(2) / 24.0;
     let spread = (spread(wide, count_x) + spread(tall, count_y)) as f32;
-    let step = (top[0] - bottom[0]) / f64::from(count_y);
     let share = 1.0 / (count_x * count_y) as f32;
     let sums = &tree.sums[index as usize * tree.channels..][..tree.channels];
-    for i in 0..count_x {
+    let meridian = |i: u32| {
         let lambda = longitude(f64::from(x) + (f64::from(i) + 0.5) / f64::from(count_x), tree.width);
-        for j in 0..count_y {
-            let d = direction(lambda, top[0] - (f64::from(j) + 0.5) * step).as_vec3();
-            points.places.push([d.x, d.y, d.z, spread]);
+        [libm::sin(lambda) as f32, -libm::cos(lambda) as f32]
+    };
+    let meridians: [[f32; 2]; MAX_PARTS as usize] = std::array::from_fn(|i| if (i as u32) < count_x { meridian(i as u32) } else { [0.0; 2] });
+    let step = (top[0] - bottom[0]) / f64::from(count_y);
+    for j in 0..count_y {
+        let sine = top[0] - (f64::from(j) + 0.5) * step;
+        let (sine, cosine) = (sine as f32, (1.0 - sine * sine).max(0.0).sqrt() as f32);
+        for [s, c] in &meridians[..count_x as usize] {
+            points.places.push([cosine * s, sine, cosine * c, spread]);
             points.sums.extend(sums.iter().map(|sum| sum * share));
         }
     }

@@ -40,9 +40,11 @@ impl Points {
     }
 }
 
-/// Σ weight · sums over points: `channels` × [`LANES`] numbers, channel by channel, into `totals`.
+/// Adds Σ weight · sums over points to `totals`: `channels` × [`LANES`] numbers, channel by channel.
+///
+/// The weight is that at the mean of t, plus ½ k_tt Var t with Var t = s² e, e the spread: what a round block's extent
+/// adds. That part has the same sign in every block, so without it errors would add up.
 pub fn filter_sum(points: &Points, channels: usize, directions: &Directions, lobe: &Lobe, totals: &mut [f64]) {
-    totals.fill(0.0);
     let mut weights = [[0.0f32; LANES]; CHUNK];
     let (a, b) = (lobe.a as f32, lobe.b as f32);
     for (places, sums) in points.places.chunks(CHUNK).zip(points.sums.chunks(CHUNK * channels)) {
@@ -55,33 +57,44 @@ pub fn filter_sum(points: &Points, channels: usize, directions: &Directions, lob
     }
 }
 
-/// t and (a / (a + b t))² of a point for one direction.
+/// ½ s² of a point for one direction.
 #[inline(always)]
-fn peak(place: &[f32; 4], d: &Directions, lane: usize, a: f32, b: f32) -> (f32, f32) {
+fn half_square(place: &[f32; 4], d: &Directions, lane: usize) -> f32 {
     let (x, y, z) = (d.x[lane] - place[0], d.y[lane] - place[1], d.z[lane] - place[2]);
-    let t = place[3] + 0.5 * (x * x + y * y + z * z);
-    let p = a / (a + b * t);
-    (t, p * p)
+    0.5 * (x * x + y * y + z * z)
 }
 
 #[multiversion(targets("x86_64+avx2", "x86_64+avx"))]
 fn weigh_ggx_nl(places: &[[f32; 4]], d: &Directions, a: f32, b: f32, weights: &mut [[f32; LANES]]) {
+    let bend_all = 6.0 * (b / a) * (b / a);
     for (place, weights) in places.iter().zip(weights) {
+        let bend = bend_all * place[3];
         for lane in 0..LANES {
-            let (t, p) = peak(place, d, lane, a, b);
-            weights[lane] = p * (1.0 - t).max(0.0);
+            let h = half_square(place, d, lane);
+            let t = h + place[3];
+            let p = a / (a + b * t);
+            let p = p * p;
+            weights[lane] = p * (1.0 + bend * h * p) * (1.0 - t).max(0.0);
         }
     }
 }
 
 #[multiversion(targets("x86_64+avx2", "x86_64+avx"))]
 fn weigh_ndf(places: &[[f32; 4]], d: &Directions, a: f32, b: f32, weights: &mut [[f32; LANES]]) {
+    let bend_all = 6.0 * (b / a) * (b / a);
+    let a2 = a * a;
     for (place, weights) in places.iter().zip(weights) {
+        let bend = bend_all * place[3];
         for lane in 0..LANES {
-            let (t, p) = peak(place, d, lane, a, b);
+            let h = half_square(place, d, lane);
+            let t = h + place[3];
+            let u = a + b * t;
             let c = (1.0 - t).max(0.0);
-            // The tiny number keeps 0 / 0 away at a = 0 on the horizon.
-            weights[lane] = p * 2.0 * c / (c + (c * c + a * (1.0 - c * c)).sqrt() + 1e-30);
+            // One division for both factors: 1/u² and masking. √ is above 0 where a is.
+            let masked = c + (c * c + a * (1.0 - c * c)).sqrt();
+            let inverse = 1.0 / (u * u * masked);
+            let p = a2 * masked * inverse;
+            weights[lane] = 2.0 * a2 * c * inverse * (1.0 + bend * h * p);
         }
     }
 }
