@@ -7,15 +7,14 @@
 //! - E_ρ = ∫ F G₂ (h·ω_o) / (n·ω_o) D(h) dh over the same facets, G₂ Smith's height-correlated. Schlick's Fresnel factor
 //!   F₀ + (1 − F₀)(1 − h·ω_o)⁵ splits it into F₀ R + G.
 //!
-//! Facets are integrated over x = ln(1 + r²/α²), r = tan θ_h, in which GGX's tails are even, with Gauss points in both.
+//! Facets are integrated over x = ln(1 + tan² θ_h/α²), in which GGX's tails are even. Up to θ_h = (π/2 − θ_o)/2 all
+//! azimuths are visible, beyond (π/2 + θ_o)/2 none; between, the arc has square-root ends, which a cosine smooths.
 
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Edge of the table.
 pub const SIZE: u32 = 64;
-/// Gauss points of polar angle and azimuth, 16 a piece.
-const POLAR_PIECES: u32 = 3;
 /// Weights and nodes on (−1, 1) of Gauss quadrature with 16 points, the positive half.
 const GAUSS16: [(f64, f64); 8] = [
     (0.095_012_509_837_637_44, 0.189_450_610_455_068_5),
@@ -79,31 +78,35 @@ pub fn areas(cos_o: f64, alpha: f64) -> Areas {
     let a = alpha * alpha;
     let sin_o = (1.0 - cos_o * cos_o).max(0.0).sqrt();
     let mut sum = Areas { whole: facet_area(alpha), ..Areas::default() };
-    // Beyond this tangent less than 1e-7 of all facets are left that reflect upwards.
-    let end = libm::log1p(1e7);
-    for piece in 0..POLAR_PIECES {
-        let [low, high] = [piece, piece + 1].map(|k| end * f64::from(k) / f64::from(POLAR_PIECES));
-        gauss(low, high, |x, weight| {
-            let grown = libm::exp(x);
-            let tangent2 = a * (grown - 1.0);
-            let cos_h = 1.0 / (1.0 + tangent2).sqrt();
-            let sin_h = tangent2.sqrt() * cos_h;
-            // D cos⁴ = 1/(π α² grown²) and r dr = α² grown dx / 2; D dh is that over cos θ_h.
-            let facets = weight / (2.0 * PI * grown * cos_h);
-            let arc = visible_arc(cos_o, sin_o, cos_h, sin_h);
-            sum.reflecting += 2.0 * arc * facets;
-            gauss(0.0, arc, |phi, weight| {
-                let oh = sin_h * sin_o * libm::cos(phi) + cos_h * cos_o;
-                let cos_i = 2.0 * oh * cos_h - cos_o;
-                if cos_i > 0.0 && oh > 0.0 {
-                    let part = 2.0 * weight * facets * masking(cos_o, cos_i, a) * oh / cos_o;
-                    let schlick = (1.0 - oh).max(0.0).powi(5);
-                    sum.scale += part * (1.0 - schlick);
-                    sum.bias += part * schlick;
-                }
-            });
+    let mut add = |x: f64, weight: f64| {
+        let grown = libm::exp(x);
+        let tangent2 = a * (grown - 1.0);
+        let cos_h = 1.0 / (1.0 + tangent2).sqrt();
+        let sin_h = tangent2.sqrt() * cos_h;
+        // D sin θ_h dθ_h = dx / (2π grown cos θ_h).
+        let facets = weight / (2.0 * PI * grown * cos_h);
+        let arc = visible_arc(cos_o, sin_o, cos_h, sin_h);
+        sum.reflecting += 2.0 * arc * facets;
+        gauss(0.0, arc, |phi, weight| {
+            let oh = sin_h * sin_o * libm::cos(phi) + cos_h * cos_o;
+            let cos_i = 2.0 * oh * cos_h - cos_o;
+            if cos_i > 0.0 && oh > 0.0 {
+                let part = 2.0 * weight * facets * masking(cos_o, cos_i, a) * oh / cos_o;
+                let schlick = (1.0 - oh).max(0.0).powi(5);
+                sum.scale += part * (1.0 - schlick);
+                sum.bias += part * schlick;
+            }
         });
-    }
+    };
+    let x_of = |theta: f64| libm::log1p(libm::tan(theta).powi(2) / a);
+    let theta_o = libm::acos(cos_o);
+    let [first, last] = [FRAC_PI_2 - theta_o, FRAC_PI_2 + theta_o].map(|twice| x_of(0.5 * twice));
+    gauss(0.0, 0.5 * first, &mut add);
+    gauss(0.5 * first, first, &mut add);
+    gauss(0.0, PI, |psi, weight| {
+        let half = 0.5 * (last - first);
+        add(first + half * (1.0 - libm::cos(psi)), weight * half * libm::sin(psi));
+    });
     sum
 }
 

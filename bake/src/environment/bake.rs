@@ -119,15 +119,15 @@ fn filtered_mips(
     progress.begin("filter", texels);
     let all = |image: &EnvironmentImage| extra_channels(image, params, extra);
     let own = all(image);
-    let mut first = BASE_CHANNELS + extra;
-    let reduction = options.reduction(image);
-    let small = (reduction > 1).then(|| image.reduced(reduction));
-    let tree = match &small {
-        Some(small) => Tree::new(small, extra, &all(small), more > 0),
-        None => Tree::new(image, extra, &own, more > 0),
+    let tree = match options.division(image) {
+        1 => Tree::new(image, extra, &own, more > 0),
+        parts => {
+            let fine = image.divided(parts);
+            Tree::new(&fine, extra, &all(&fine), more > 0)
+        }
     };
-    first = first.next_multiple_of(4);
-    let mut mips = Mips { channels: first, texels: vec![first_mip(image, params.face_size, &own, extra, first)] };
+    let channels = tree.channels;
+    let mut mips = Mips { channels, texels: vec![first_mip(image, params.face_size, &own, extra, channels)] };
     drop(own);
     progress.advance(6 * u64::from(params.face_size).pow(2));
     for (size, alpha) in sizes.iter().zip(&params.roughness).skip(1) {

@@ -25,6 +25,8 @@ const MAX_PARTS: f32 = 16.0;
 const OF_COLOUR: f32 = 40.0;
 /// The same of indicators, whose moments are estimates from above.
 const OF_LEVELS: f32 = 160.0;
+/// What curvature may do to squared luminance, in units of a texel's allowance.
+const OF_SQUARE: f32 = 4.0;
 /// Blocks of a first look are no larger, so that even a lobe as wide as the hemisphere sees where it ends.
 const LOOK_RADIUS: f32 = 0.3;
 
@@ -146,7 +148,9 @@ impl Bound {
         let peak = self.a / (self.a + 0.5 * self.b * near2);
         let peak = peak * peak;
         let gradient = peak * (first_slope + edge_slope) * far.min(1.5);
-        let fits = (relative <= allowance.of_block || peak * relative * block.light <= light)
+        let bent = peak * relative;
+        let fits = (relative <= allowance.of_block
+            || (bent * block.light <= light && bent * block.square <= OF_SQUARE * square))
             && (light == 0.0
                 || (gradient * block.colour_moment <= OF_COLOUR * light
                     && gradient * block.level_moment <= OF_LEVELS * light
@@ -154,11 +158,12 @@ impl Bound {
         if fits || block.light == 0.0 {
             return 1.0;
         }
-        let over = (relative / allowance.of_block).min(if light > 0.0 {
-            peak * relative * block.light / light
+        let of_texel = if light > 0.0 {
+            (bent * block.light / light).max(bent * block.square / (OF_SQUARE * square))
         } else {
             f32::INFINITY
-        });
+        };
+        let over = (relative / allowance.of_block).min(of_texel);
         // The error falls with the square of the parts' size.
         over.sqrt().max(1.01)
     }

@@ -108,23 +108,13 @@ impl EnvironmentImage {
         sum
     }
 
-    /// The image at 1/factor of the size: means by solid angle of blocks of factor × factor pixels.
-    pub fn reduced(&self, factor: u32) -> EnvironmentImage {
-        let (width, height) = (self.width.div_ceil(factor), self.height.div_ceil(factor));
-        let mut pixels = Vec::with_capacity((width * height) as usize);
-        for j in 0..height {
-            for i in 0..width {
-                let (mut sum, mut whole) = ([0.0; 3], 0.0);
-                for y in j * factor..((j + 1) * factor).min(self.height) {
-                    let weight = self.solid_angle_sr(y);
-                    for x in i * factor..((i + 1) * factor).min(self.width) {
-                        let pixel = self.pixels[(y * self.width + x) as usize];
-                        (0..3).for_each(|c| sum[c] += weight * f64::from(pixel[c]));
-                        whole += weight;
-                    }
-                }
-                pixels.push(sum.map(|s| (s / whole) as f32));
-            }
+    /// The same radiance in pixels of 1/factor the size.
+    pub fn divided(&self, factor: u32) -> EnvironmentImage {
+        let (width, height) = (self.width * factor, self.height * factor);
+        let mut pixels = Vec::with_capacity(width as usize * height as usize);
+        for y in 0..height {
+            let row = &self.pixels[(y / factor * self.width) as usize..][..self.width as usize];
+            pixels.extend((0..width).map(|x| row[(x / factor) as usize]));
         }
         EnvironmentImage { width, height, pixels }
     }

@@ -130,15 +130,14 @@ impl EnvironmentOptions {
         let channels = (4 + levels * if self.coloured { 4 } else { 1 }).next_multiple_of(4);
         let texels = 8 * u64::from(self.face_size).pow(2);
         // Pixels with all channels, pieces of the resampling, the tree, and texels in f64.
-        let factor = u64::from(self.reduction(image));
-        let kept = pixels / (factor * factor);
-        pixels * (12 + 4 * channels + 8) + 24 * texels + 2 * kept * (48 + 4 * channels) + texels * channels * 16
+        let parts = pixels * u64::from(self.division(image)).pow(2);
+        (pixels + parts) * (12 + 4 * channels + 8) + 24 * texels + 2 * parts * (48 + 4 * channels) + texels * channels * 16
     }
 
-    /// By how much the source is reduced for the filtered mips: a pixel stays smaller than an eighth of the lobe's
-    /// face texels are wide. The first mip sees all pixels.
-    pub fn reduction(&self, image: &EnvironmentImage) -> u32 {
-        (image.width / (8 * self.face_size)).max(1)
+    /// In how many parts a side pixels are divided for the filter, so that they are no wider than half a texel of the
+    /// first mip's equator. What the image says stays the same.
+    pub fn division(&self, image: &EnvironmentImage) -> u32 {
+        (4 * self.face_size).div_ceil(image.width)
     }
 }
 

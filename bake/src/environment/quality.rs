@@ -14,6 +14,8 @@ use rayon::prelude::*;
 
 /// Purpose of the random numbers that choose texels.
 const PURPOSE: u32 = 30;
+/// Images of fewer columns have their pixels divided, so that the reference has not to divide them everywhere.
+const FINE_WIDTH: u32 = 256;
 /// Points a side of a texel of the first mip.
 const SAMPLES: u32 = 256;
 
@@ -37,6 +39,14 @@ impl Compared {
 
 /// Compares up to `count` texels of a mip, all of them where there are no more.
 pub fn compare(image: &EnvironmentImage, environment: &Environment, mip: u32, count: u32) -> Vec<Compared> {
+    let fine;
+    let image = match FINE_WIDTH.div_ceil(image.width) {
+        0 | 1 => image,
+        parts => {
+            fine = image.divided(parts);
+            &fine
+        }
+    };
     let size = environment.size(mip);
     let all = 6 * size * size;
     let (kernel, alpha) = (environment.params.kernel, environment.params.roughness[mip as usize]);

@@ -48,32 +48,39 @@ pub fn kernel_weight(kernel: Kernel, n: DVec3, l: DVec3, alpha: f64) -> f64 {
     }
 }
 
-/// Calls `add` with index, weight and solid angle of every pixel that has any weight.
+/// Calls `add` with index and weight times solid angle of every pixel that has any weight.
 fn over_pixels(image: &EnvironmentImage, kernel: Kernel, n: DVec3, alpha: f64, mut add: impl FnMut(usize, f64)) {
     let (width, height) = (f64::from(image.width), f64::from(image.height));
     let tall = PI / height;
+    let centres: Vec<[f64; 2]> = (0..image.width)
+        .map(|x| 2.0 * PI * ((f64::from(x) + 0.5) / width - 0.5))
+        .map(|longitude| [libm::sin(longitude), libm::cos(longitude)])
+        .collect();
     for y in 0..image.height {
-        let latitude = PI * (0.5 - (f64::from(y) + 0.5) / height);
-        let wide = 2.0 * PI / width * libm::cos(latitude);
-        let sines = [image.sine(f64::from(y)), image.sine(f64::from(y + 1))];
-        let centre_sine = 0.5 * (sines[0] + sines[1]);
+        let wide = 2.0 * PI / width * libm::cos(PI * (0.5 - (f64::from(y) + 0.5) / height));
+        let [top, bottom] = [y, y + 1].map(|row| image.sine(f64::from(row)));
+        let sine = 0.5 * (top + bottom);
+        let cosine = (1.0 - sine * sine).sqrt();
+        let solid_angle = image.solid_angle_sr(y);
         for x in 0..image.width {
-            let longitude = 2.0 * PI * ((f64::from(x) + 0.5) / width - 0.5);
-            let centre = direction(longitude, centre_sine);
-            let distance = (centre - n).length();
+            let [s, c] = centres[x as usize];
+            let distance = (DVec3::new(cosine * s, sine, -cosine * c) - n).length();
+            // The farthest point of the horizon is √2 away.
+            if distance > std::f64::consts::SQRT_2 + tall + wide {
+                continue;
+            }
             let fine = (alpha / PER_ALPHA).max((distance - tall.max(wide)).max(0.0) / PER_DISTANCE);
-            let parts_x = ((wide / fine).ceil() as u32).max(1);
-            let parts_y = ((tall / fine).ceil() as u32).max(1);
+            let [parts_x, parts_y] = [wide, tall].map(|side| ((side / fine).ceil() as u32).max(1));
             let mut sum = 0.0;
             for i in 0..parts_x {
                 let part = (f64::from(x) + (f64::from(i) + 0.5) / f64::from(parts_x)) / width;
                 for j in 0..parts_y {
-                    let sine = sines[0] + (sines[1] - sines[0]) * (f64::from(j) + 0.5) / f64::from(parts_y);
+                    let sine = top + (bottom - top) * (f64::from(j) + 0.5) / f64::from(parts_y);
                     sum += kernel_weight(kernel, n, direction(2.0 * PI * (part - 0.5), sine), alpha);
                 }
             }
             if sum > 0.0 {
-                add((y * image.width + x) as usize, sum / f64::from(parts_x * parts_y) * image.solid_angle_sr(y));
+                add((y * image.width + x) as usize, sum / f64::from(parts_x * parts_y) * solid_angle);
             }
         }
     }
