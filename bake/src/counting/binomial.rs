@@ -47,6 +47,14 @@ pub fn few_hits(n: f32, p: f32, q: f32, u: f32) -> f32 {
     k.min(n)
 }
 
+/// What rounding took from a · b = `product`: both factors are split into halves whose products are exact.
+fn product_rest(a: f32, b: f32, product: f32) -> f32 {
+    let high = |x: f32| f32::from_bits(x.to_bits() & 0xffff_f000);
+    let (a_high, b_high) = (high(a), high(b));
+    let (a_low, b_low) = (a - a_high, b - b_high);
+    ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
+}
+
 /// Hits k with P(hits > k) ≈ u of n trials with p ≤ ½, q = 1 − p and np more than [`FEW`].
 ///
 /// With z the normal quantile, σ² = npq, γ = q − p:
@@ -58,8 +66,10 @@ pub fn many_hits(n: f32, p: f32, q: f32, u: f32) -> f32 {
     let skew = q - p;
     let z2 = z * z;
     let third = (1.0 - 6.0 * p * q) * (z2 - 3.0) * (1.0 / 24.0) - skew * skew * (2.0 * z2 - 5.0) * (1.0 / 36.0);
-    let hits = mean + (sigma * z + skew * (z2 - 1.0) * (1.0 / 6.0) + z * (third - 1.0 / 24.0) / sigma);
-    (hits + 0.5).floor().clamp(0.0, n)
+    let spread = sigma * z + skew * (z2 - 1.0) * (1.0 / 6.0) + z * (third - 1.0 / 24.0) / sigma;
+    // From np = 4e8 on, the rounding of np alone would show as a bias in ten million draws.
+    let hits = mean + (product_rest(n, p, mean) + spread);
+    hits.round_ties_even().clamp(0.0, n)
 }
 
 /// Hits and misses of `n` trials with hit chance `p`, from one random word; they add up to `n`.
