@@ -7,7 +7,7 @@ use std::fmt::Write;
 const TRIALS: f32 = 1e4;
 /// Panels: title, least and greatest value.
 const PANELS: [(&str, f64, f64); 3] =
-    [("E[n] / Np", 0.95, 1.35), ("variance / Npq", 0.4, 1.2), ("Wasserstein distance / σ", 0.0, 0.5)];
+    [("E[n] / Np", 0.95, 1.35), ("variance / Npq", 0.5, 1.5), ("Wasserstein distance / σ", 0.0, 0.5)];
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 180.0;
 const LEFT: f64 = 50.0;

@@ -23,7 +23,7 @@ fn levels(count: usize) -> ([f32; MAX_LEVELS], [f32; MAX_LEVELS]) {
 
 /// Prints the table.
 pub fn table() {
-    let draws = 4_000_000u32;
+    let draws = 2_000_000u32;
     println!("\n## Radiance of glints\n");
     println!(
         "Σ L_k n_k of K levels, L from 0 and 10^(4/(K − 1)) to 10⁴, chances falling as L^−0.9, half of the facets black. Mean and \

@@ -2,7 +2,7 @@
 //!
 //! Paper: Kneiphof and Klein 2025, section 6, algorithm 1 and figure 4. Deviations:
 //! - The paper decides n = 0 and n = N by a first uniform number and draws everything between from a clamped Gaussian
-//!   by a second. The Gaussian's conditional mean is not that of the distribution: E[n] exceeds Np by up to a third.
+//!   by a second. The Gaussian's conditional mean is not that of the distribution: the mean of n exceeds Np by up to a third.
 //!   Here n is the inverse of the distribution function at one uniform number. Where the rarer outcome is expected at
 //!   most [`FEW`] times, its distribution is walked from 0 up and n is exact. Beyond, n is the Cornish–Fisher expansion
 //!   (1938) of that inverse around the Gaussian, with skewness, kurtosis and the correction for whole numbers (Giles 2016
@@ -19,7 +19,7 @@ use super::pow1m::{one_minus_pow1m, pow1m};
 /// Largest expected count of the rarer outcome that is drawn exactly.
 pub const FEW: f32 = 6.0;
 
-/// Steps of the walk: more than this happens less than once in 10⁶ draws when [`FEW`] are expected.
+/// Steps of the walk: more hits happen in 1.5 of 10⁶ draws when [`FEW`] are expected, and count as this many.
 pub const WALK_STEPS: u32 = 20;
 
 /// A whole number with mean `n`: ⌊n⌋, or ⌊n⌋ + 1 with probability n − ⌊n⌋. Negative `n` counts as 0.

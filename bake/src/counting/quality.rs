@@ -81,15 +81,15 @@ pub fn outcomes(draw: impl Fn([u32; 2]) -> [f32; 2], second: SecondWord) -> Vec<
 /// What a draw is measured by, on the rarer of its two outcomes: of N = 1e16 trials, f32 holds 3 misses but not N − 3 hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CountingQuality {
-    /// (E[k] − mean) / σ with the exact mean and σ of the rarer count k.
+    /// (mean − exact mean) / σ with the exact σ of the rarer count.
     pub mean_error: f64,
-    /// E[k] / mean − 1.
+    /// mean / exact mean − 1.
     pub relative_mean_error: f64,
     /// Variance over the exact one, less 1.
     pub variance_error: f64,
     /// Wasserstein distance W₁ over σ.
     pub wasserstein: f64,
-    /// (E[n + n̄] − N) / N.
+    /// (mean of n + n̄ − N) / N.
     pub sum_error: f64,
 }
 
