@@ -22,8 +22,8 @@ fn chances(n: f32) -> Vec<(f32, f32)> {
     rare.into_iter().flat_map(|p| [(p, 1.0 - p), (1.0 - p, p)]).collect()
 }
 
-/// Distance of neighbouring f32 at the mean of the rarer count, in its standard deviations. Above ½ (Np from about 1e14)
-/// f32 has no room for the distribution.
+/// Distance of neighbouring f32 at the mean of the rarer count, in its standard deviations. Above ½ (Np from about
+/// 1e14) f32 has no room for the distribution.
 fn f32_step(exact: &ExactBinomial) -> f64 {
     let mean = exact.trials * exact.p.min(exact.q);
     let (_, exponent) = libm::frexp(mean);
@@ -176,8 +176,8 @@ fn both_ends_are_alike() {
     }
 }
 
-/// Glints do not flicker: for a fixed word the hits never fall while p grows, but for the switch of methods, where the two
-/// forms may disagree by one.
+/// Glints do not flicker: for a fixed word the hits never fall while p grows, but for the switch of methods, where the
+/// two forms may disagree by one.
 #[test]
 fn hits_grow_with_the_chance() {
     let mut rng = ItemRng::new(17, 4, 0);

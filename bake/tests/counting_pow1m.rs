@@ -10,7 +10,8 @@ fn exact_log(p: f32, q: f32) -> f64 {
     if p <= 0.5 { -log1p(f64::from(-p)) } else { -log(f64::from(q)) }
 }
 
-/// Arguments (p, q, n): p and q down to 1e-16 on either side, n from 1 to 1e16, thick where the power is neither 0 nor 1.
+/// Arguments (p, q, n): p and q down to 1e-16 on either side, n from 1 to 1e16, thick where the power is neither 0 nor
+/// 1.
 fn arguments() -> Vec<(f32, f32, f32)> {
     let mut all = Vec::new();
     for i in 0..=400 {

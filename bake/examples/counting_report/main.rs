@@ -1,7 +1,8 @@
 //! Error and cost of counting, as markdown on stdout; every number is measured in the run.
 //!
-//! `counting_report [--svg FILE]` prints the tables and draws mean, variance and shape by the expected count. Errors come
-//! from going through the random words (`counting::quality`), not from drawing; one table draws 10⁷ times as a check.
+//! `counting_report [--svg FILE]` prints the tables and draws mean, variance and shape by the expected count. Errors
+//! come from going through the random words (`counting::quality`), not from drawing; one table draws 10⁷ times as a
+//! check.
 
 mod plot;
 mod radiance;
@@ -43,7 +44,8 @@ const TRIALS: [f32; 24] = [
     1e12, 1e14, 1e16,
 ];
 
-/// (p, q) of the grid for n trials: fixed ones and fixed expected counts, each also exchanged; expected counts from 1e-7.
+/// (p, q) of the grid for n trials: fixed ones and fixed expected counts, each also exchanged; expected counts from
+/// 1e-7.
 fn chances(n: f32) -> Vec<(f32, f32)> {
     let mut rare = vec![1e-16, 1e-12, 1e-9, 1e-7, 1e-5, 1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2, 0.3, 0.4, 0.5];
     for count in

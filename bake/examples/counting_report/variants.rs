@@ -57,7 +57,8 @@ fn walk(n: f32, p: f32, q: f32, u: f32, steps: u32) -> f32 {
     k.min(n)
 }
 
-/// Rounded Cornish–Fisher expansion to an order: 0 is the Gaussian, 1 adds skewness and the variance of rounding, 2 kurtosis.
+/// Rounded Cornish–Fisher expansion to an order: 0 is the Gaussian, 1 adds skewness and the variance of rounding, 2
+/// kurtosis.
 fn expansion(n: f32, p: f32, q: f32, u: f32, order: u32) -> f32 {
     let (mean, skew) = (n * p, q - p);
     let variance = mean * q;
@@ -75,8 +76,8 @@ fn expansion(n: f32, p: f32, q: f32, u: f32, order: u32) -> f32 {
     hits.round_ties_even().clamp(0.0, n)
 }
 
-/// Walk where at most `FEW` of the rarer outcome are expected, expansion to `ORDER` beyond; `BOTH` computes both each time, as
-/// lanes of a GPU do when their neighbours go the other way.
+/// Walk where at most `FEW` of the rarer outcome are expected, expansion to `ORDER` beyond; `BOTH` computes both each
+/// time, as lanes of a GPU do when their neighbours go the other way.
 fn switched<const FEW: u32, const ORDER: u32, const BOTH: bool>(n: f32, p: f32, q: f32, bits: [u32; 2]) -> [f32; 2] {
     let n = whole_count(n, bits[0]);
     let swapped = p > q;
@@ -127,9 +128,9 @@ fn moved_gaussian(mean: f32, sigma: f32, lo: f32, hi: f32, wanted: f32, z: f32) 
     }
 }
 
-/// Gates as in the paper with powers that hold, on the rarer outcome. `KIND` 0: the paper's Gaussian; 1: moved to the mean
-/// that E[n] = Np asks for; 2: from N = 4 on, gates for one hit and one miss too, and a Gaussian of the rest's mean and
-/// variance, moved.
+/// Gates as in the paper with powers that hold, on the rarer outcome. `KIND` 0: the paper's Gaussian; 1: moved to the
+/// mean that E[n] = Np asks for; 2: from N = 4 on, gates for one hit and one miss too, and a Gaussian of the rest's
+/// mean and variance, moved.
 fn gated<const KIND: u32>(n: f32, p: f32, q: f32, bits: [u32; 2]) -> [f32; 2] {
     if n <= 2.0 {
         return paper::binomial(n, p, bits);

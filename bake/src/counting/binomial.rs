@@ -2,16 +2,17 @@
 //!
 //! Paper: Kneiphof and Klein 2025, section 6, algorithm 1 and figure 4. Deviations:
 //! - The paper decides n = 0 and n = N by a first uniform number and draws everything between from a clamped Gaussian
-//!   by a second. The Gaussian's conditional mean is not that of the distribution: the mean of n exceeds Np by up to a third.
-//!   Here n is the inverse of the distribution function at one uniform number. Where the rarer outcome is expected at
-//!   most [`FEW`] times, its distribution is walked from 0 up and n is exact. Beyond, n is the Cornish–Fisher expansion
-//!   (1938) of that inverse around the Gaussian, with skewness, kurtosis and the correction for whole numbers (Giles 2016
-//!   and Giles and Beentjes 2024 use such forms for Poisson and binomial numbers), rounded to a whole number. Its
-//!   mean is Np term by term.
+//!   by a second. The Gaussian's conditional mean is not that of the distribution: the mean of n exceeds Np by up to a
+//!   third. Here n is the inverse of the distribution function at one uniform number. Where the rarer outcome is
+//!   expected at most [`FEW`] times, its distribution is walked from 0 up and n is exact. Beyond, n is the
+//!   Cornish–Fisher expansion (1938) of that inverse around the Gaussian, with skewness, kurtosis and the correction
+//!   for whole numbers (Giles 2016, "Algorithm 955", has such a form for Poisson numbers), rounded to a whole number.
+//!   Its mean is Np term by term.
 //! - Both ends are treated alike: the rarer of the two outcomes is the one that is counted.
-//! - For a fractional N the paper mixes the distributions of ⌊N⌋ and ⌈N⌉ below 2, where n + n̄ is not N, and uses N as it
-//!   is above, where counts are fractional. Here the mixture is the definition for all N: N facets are ⌊N⌋ facets and one more
-//!   with probability N − ⌊N⌋. n + n̄ is that whole number; it is N where N is whole, as all f32 from 2²³ on are.
+//! - For a fractional N the paper mixes the distributions of ⌊N⌋ and ⌈N⌉ below 2, where n + n̄ is not N, and uses N as
+//!   it is above, where counts are fractional. Here the mixture is the definition for all N: N facets are ⌊N⌋ facets
+//!   and one more with probability N − ⌊N⌋. n + n̄ is that whole number; it is N where N is whole, as all f32 from 2²³
+//!   on are.
 
 use super::normal::{normal_upper_quantile, unit_from_bits};
 use super::pow1m::{one_minus_pow1m, pow1m};

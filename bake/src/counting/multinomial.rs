@@ -20,10 +20,10 @@ pub fn tree_leaves(levels: usize) -> usize {
 
 /// How many of `n` ≥ 0 facets fall to each level, with chances in proportion to `weights`.
 ///
-/// The first `levels` (1 to 16) weights count; they are finite, ≥ 0, and need not add up to 1. A level of weight 0 gets no
-/// facet; if all are 0, level 0 gets them. Word 0 of `bits` makes `n` whole, words 1 to [`tree_leaves`] − 1
-/// draw: node i has the children 2i and 2i + 1. Whole counts come back that add up to a whole number with mean `n`
-/// (`n` itself where it is whole; above 2²⁴ each is rounded to f32).
+/// The first `levels` (1 to 16) weights count; they are finite, ≥ 0, and need not add up to 1. A level of weight 0 gets
+/// no facet; if all are 0, level 0 gets them. Word 0 of `bits` makes `n` whole, words 1 to [`tree_leaves`] − 1 draw:
+/// node i has the children 2i and 2i + 1. Whole counts come back that add up to a whole number with mean `n` (`n`
+/// itself where it is whole; above 2²⁴ each is rounded to f32).
 pub fn multinomial(n: f32, weights: &[f32; MAX_LEVELS], levels: usize, bits: &[u32; MAX_LEVELS]) -> [f32; MAX_LEVELS] {
     let leaves = tree_leaves(levels);
     let mut weight = [0.0f32; 2 * MAX_LEVELS];

@@ -9,7 +9,8 @@ use super::normal::{normal_upper_quantile, unit_from_bits};
 /// Below this p the paper scales p and N (ε = 10^−3.54).
 const EPSILON: f32 = 2.884_031_5e-4;
 
-/// n and n̄ of `n` ≥ 0 trials with chance `p` from 0 to 1; the first word decides the gates, the second is for the Gaussian.
+/// n and n̄ of `n` ≥ 0 trials with chance `p` from 0 to 1; the first word decides the gates, the second is for the
+/// Gaussian.
 pub fn binomial(n: f32, p: f32, bits: [u32; 2]) -> [f32; 2] {
     let gate = unit_from_bits(bits[0]);
     let n2 = n.max(2.0);

@@ -27,7 +27,8 @@ pub enum SecondWord {
     Shares(u32),
 }
 
-/// Words and how many of them up to the next change of `value`, over all 2³² words; `value` must not return to what it left.
+/// Words and how many of them up to the next change of `value`, over all 2³² words; `value` must not return to what it
+/// left.
 fn constant_runs(value: &impl Fn(u32) -> [f32; 2]) -> Vec<([f32; 2], u64)> {
     let mut runs = Vec::new();
     let (mut start, end) = (0u64, 1u64 << 32);
@@ -78,7 +79,8 @@ pub fn outcomes(draw: impl Fn([u32; 2]) -> [f32; 2], second: SecondWord) -> Vec<
     all
 }
 
-/// What a draw is measured by, on the rarer of its two outcomes: of N = 1e16 trials, f32 holds 3 misses but not N − 3 hits.
+/// What a draw is measured by, on the rarer of its two outcomes: of N = 1e16 trials, f32 holds 3 misses but not N − 3
+/// hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CountingQuality {
     /// (mean − exact mean) / σ with the exact σ of the rarer count.

@@ -1,8 +1,8 @@
 //! The binomial distribution in f64 from its definition, for any real number of trials ≥ 0.
 //!
 //! N facets lie in a footprint: ⌊N⌋ of them and one more with probability λ = N − ⌊N⌋. Each reflects with chance p. So
-//! P_N(k) = (1 − λ) C(⌊N⌋, k) p^k q^(⌊N⌋ − k) + λ C(⌊N⌋ + 1, k) p^k q^(⌊N⌋ + 1 − k), mean Np, variance Npq + λ(1 − λ)p².
-//! Below N = 2 this is the paper's own definition (Kneiphof and Klein 2025, figure 4). For N to 1e16 the binomial
+//! P_N(k) = (1 − λ) C(⌊N⌋, k) p^k q^(⌊N⌋ − k) + λ C(⌊N⌋ + 1, k) p^k q^(⌊N⌋ + 1 − k), mean Np, variance
+//! Npq + λ(1 − λ)p². Below N = 2 this is the paper's own definition (Kneiphof and Klein 2025, figure 4). For N to 1e16 the binomial
 //! coefficients are written by what factorials exceed Stirling's formula by, so that large logarithms never cancel.
 
 use libm::{exp, lgamma, log, log1p, sqrt};
@@ -118,10 +118,11 @@ impl ExactBinomial {
         self.trials * self.p * self.q + fraction * (1.0 - fraction) * self.p * self.p
     }
 
-    /// Counts in ascending order with their probabilities, over 12 standard deviations and more either side of the mean.
+    /// Counts in ascending order with their probabilities, over 12 standard deviations and more either side of the
+    /// mean.
     ///
-    /// Where the standard deviation is above 512, one count stands for the few around it (a 512th of it). The mean is at
-    /// most 2⁵², so that counts are told apart; exchange p and q if it is not.
+    /// Where the standard deviation is above 512, one count stands for the few around it (a 512th of it). The mean is
+    /// at most 2⁵², so that counts are told apart; exchange p and q if it is not.
     pub fn steps(&self) -> Vec<(f64, f64)> {
         let sigma = sqrt(self.variance());
         let stride = (sigma / 512.0).floor().max(1.0);

@@ -1,7 +1,7 @@
 //! The least exact elementary functions that WGSL allows, for tests and reports.
 //!
-//! WGSL, section "Accuracy of Concrete Floating Point Expressions", f32: log is off by at most 2⁻²¹ between ½ and 2 and by 3 units in
-//! the last place elsewhere, exp by 3 + 2|x| units, division by 2.5 units.
+//! WGSL, section "Accuracy of Concrete Floating Point Expressions", f32: log is off by at most 2⁻²¹ between ½ and 2 and
+//! by 3 units in the last place elsewhere, exp by 3 + 2|x| units, division by 2.5 units.
 
 use super::pow1m::Elementary;
 
