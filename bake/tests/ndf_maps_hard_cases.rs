@@ -56,6 +56,7 @@ fn integral(name: &str, material: &Material, footprint: &Footprint) -> f64 {
 
 #[test]
 fn hard_examples_stay_normalised_under_every_footprint() {
+    let mut worst = (0.0, "");
     for (name, map) in hard_maps() {
         for options in [
             PlacementOptions::Tiled(TransformRanges::default()),
@@ -67,11 +68,15 @@ fn hard_examples_stay_normalised_under_every_footprint() {
                 for mean in [DVec2::ZERO, DVec2::new(5.3, -1000.7)] {
                     let footprint = Footprint::new(mean, sigma, anisotropy, 0.7);
                     let got = integral(name, &material, &footprint);
-                    assert!((got - 1.0).abs() < 0.03, "{name}: ∫D = {got} under σ {sigma}, anisotropy {anisotropy}");
+                    assert!((got - 1.0).abs() < 0.02, "{name}: ∫D = {got} under σ {sigma}, anisotropy {anisotropy}");
+                    if (got - 1.0).abs() > worst.0 {
+                        worst = ((got - 1.0).abs(), name);
+                    }
                 }
             }
         }
     }
+    println!("largest |∫D − 1|: {:.4} ({})", worst.0, worst.1);
 }
 
 #[test]

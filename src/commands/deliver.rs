@@ -45,14 +45,18 @@ impl Delivery<'_> {
     /// rest.
     pub fn write(&self, bytes: Vec<u8>, smaller: &str, terminal: Terminal) -> Result<(), Failure> {
         self.check_size(bytes.len() as u64, smaller)?;
-        let report = Report::of_bytes(self.output, bytes.clone());
+        let report = Report::of_bytes(self.output, bytes);
+        let Some(pack) = report.pack() else {
+            let message = format!("the pack cannot be read back: {}; please report this", report.to_json());
+            return Err(Failure::new(Exit::Unexpected, message));
+        };
         if let Some(path) = &self.run.report {
             output::write(path, report.to_json().as_bytes())?;
         }
         if let Some(path) = &self.run.depfile {
             output::write(path, output::depfile(self.output, &self.inputs()).as_bytes())?;
         }
-        let outcome = output::write(self.output, &bytes)?;
+        let outcome = output::write(self.output, pack.file_bytes())?;
         terminal.say(&summary(&report, outcome));
         if self.run.json {
             output::print(&report.to_json())?;

@@ -16,6 +16,7 @@ use super::options::DictionaryOptions;
 use super::round::to_half_with_sum;
 use super::tables::Dictionary;
 use crate::error::Result;
+use std::ops::AddAssign;
 
 /// Last level whose lobes are summed one by one.
 const EXACT_LEVEL: u32 = 8;
@@ -33,13 +34,24 @@ const LOBE_REACH: f64 = 6.0;
 /// Those of [`DictionaryOptions::validate`].
 pub fn bake(options: &DictionaryOptions) -> Result<Dictionary> {
     options.validate()?;
+    let quantiles = MeanQuantiles::new(options);
+    let mut bits = vec![0u16; options.tables() as usize * options.entries as usize];
+    bake_exact(options, &quantiles, &mut bits);
+    // Counts below 2^16 take half the memory of the whole bake.
+    if options.levels <= u16::BITS {
+        bake_counted::<u16>(options, &quantiles, &mut bits);
+    } else {
+        bake_counted::<u32>(options, &quantiles, &mut bits);
+    }
+    Ok(Dictionary { options: *options, bits })
+}
+
+/// Levels up to [`EXACT_LEVEL`]: lobe by lobe.
+fn bake_exact(options: &DictionaryOptions, quantiles: &MeanQuantiles, bits: &mut [u16]) {
     let n = options.marginals as usize;
     let entries = options.entries as usize;
-    let quantiles = MeanQuantiles::new(options);
     let mut draws = Draws::new(options.seed, options.marginals);
     let mut table = vec![0f64; entries];
-    let mut bits = vec![0u16; n * options.levels as usize * entries];
-
     let mut sums = vec![0f64; n * entries];
     let mut lobe = 0;
     for level in 0..options.levels.min(EXACT_LEVEL + 1) {
@@ -52,19 +64,31 @@ pub fn bake(options: &DictionaryOptions) -> Result<Dictionary> {
         }
         for i in 0..n {
             table.copy_from_slice(&sums[i * entries..][..entries]);
-            store(options, level, i, &mut table, &mut bits);
+            store(options, level, i, &mut table, bits);
         }
     }
-    if options.levels <= EXACT_LEVEL + 1 {
-        return Ok(Dictionary { options: *options, bits });
-    }
+}
 
+/// A whole number that counts lobes.
+trait Count: Copy + Default + AddAssign + From<u8> + Into<f64> {}
+impl Count for u16 {}
+impl Count for u32 {}
+
+/// Levels above [`EXACT_LEVEL`]: counts in sub-bins, and a convolution a level.
+fn bake_counted<C: Count>(options: &DictionaryOptions, quantiles: &MeanQuantiles, bits: &mut [u16]) {
+    if options.levels <= EXACT_LEVEL + 1 {
+        return;
+    }
+    let n = options.marginals as usize;
+    let entries = options.entries as usize;
     let kernel = Kernel::new(options, quantiles.sub_bins_per_entry);
     let sub_bins = quantiles.sub_bins();
-    let mut counts = vec![0u32; n * sub_bins];
+    let mut draws = Draws::new(options.seed, options.marginals);
+    let mut table = vec![0f64; entries];
+    let mut counts = vec![C::default(); n * sub_bins];
     let mut block = vec![0u32; n * BLOCK];
     let mut spread = vec![0f64; kernel.spread_len(entries)];
-    lobe = 0;
+    let mut lobe = 0;
     for level in EXACT_LEVEL + 1..options.levels {
         while lobe < 1 << level {
             for j in 0..BLOCK {
@@ -77,16 +101,15 @@ pub fn bake(options: &DictionaryOptions) -> Result<Dictionary> {
             for i in 0..n {
                 let row = &mut counts[i * sub_bins..][..sub_bins];
                 for sub_bin in &block[i * BLOCK..][..BLOCK] {
-                    row[*sub_bin as usize] += 1;
+                    row[*sub_bin as usize] += C::from(1);
                 }
             }
         }
         for i in 0..n {
             kernel.convolve(&counts[i * sub_bins..][..sub_bins], &mut spread, &mut table);
-            store(options, level, i, &mut table, &mut bits);
+            store(options, level, i, &mut table, bits);
         }
     }
-    Ok(Dictionary { options: *options, bits })
 }
 
 /// Scales `table` so that linear filtering integrates it to ½ over the half line, and stores it rounded.
@@ -253,14 +276,14 @@ impl Kernel {
 
     /// `table[b]` becomes the sum over lobes and mirror images at bin centre b. `spread` holds the counts sorted by
     /// place within the bin, so that the inner loop runs over neighbouring memory.
-    fn convolve(&self, counts: &[u32], spread: &mut [f64], table: &mut [f64]) {
+    fn convolve<C: Count>(&self, counts: &[C], spread: &mut [f64], table: &mut [f64]) {
         let entries = table.len();
         let row = entries + 2 * self.pad;
         for s in 0..self.per_entry {
             for p in 0..row {
                 let sub = (p as i64 - self.pad as i64) * self.per_entry as i64 + s as i64;
                 let folded = if sub < 0 { -1 - sub } else { sub } as usize;
-                spread[s * row + p] = if folded < counts.len() { f64::from(counts[folded]) } else { 0.0 };
+                spread[s * row + p] = if folded < counts.len() { counts[folded].into() } else { 0.0 };
             }
         }
         table.fill(0.0);

@@ -1,11 +1,11 @@
 //! A footprint as an ellipse, and what lies under it: cells of a grid, tiles of the repeating example.
 
 use crate::footprint::Footprint;
-use glam::Vec2;
+use glam::{Mat2, Vec2};
 use glint_formats::ndf_maps::Level;
 
-/// Tiles lie within this many standard deviations of the footprint's centre; 0.6 % of its mass is farther out.
-pub const REACH: f32 = 3.2;
+/// Tiles lie within this many standard deviations of the footprint's centre; 2 % of its mass is farther out.
+pub const REACH: f32 = 2.8;
 /// Finest boxes: below this edge positions have no digits left.
 pub const FINEST_TEXELS: f32 = 1.0 / 4096.0;
 
@@ -24,6 +24,26 @@ impl Ellipse {
         // A point is a footprint of the finest box's size.
         let [minor, major] = [minor, major].map(|sigma| (sigma as f32).max(0.5 * FINEST_TEXELS));
         Ellipse { mean: footprint.mean.as_vec2(), major_axis: axis.as_vec2(), minor, major }
+    }
+
+    /// The ellipse in coordinates x' = m · x + offset. The minor axis follows from the area, which keeps its digits.
+    pub fn transformed(&self, m: Mat2, offset: Vec2) -> Ellipse {
+        let p = m * self.major_axis * self.major;
+        let q = m * self.major_axis.perp() * self.minor;
+        let half_gap = Vec2::new(0.5 * (p.x * p.x + q.x * q.x - p.y * p.y - q.y * q.y), p.x * p.y + q.x * q.y);
+        let h = half_gap.length();
+        let major = (0.5 * (p.length_squared() + q.length_squared()) + h).sqrt();
+        let twice_axis = if half_gap.x >= 0.0 {
+            Vec2::new(h + half_gap.x, half_gap.y)
+        } else {
+            Vec2::new(half_gap.y.abs(), (h - half_gap.x).copysign(half_gap.y))
+        };
+        Ellipse {
+            mean: m * self.mean + offset,
+            major_axis: twice_axis.normalize_or(Vec2::X),
+            minor: (m.determinant() * self.major * self.minor).abs() / major,
+            major,
+        }
     }
 
     /// Widened by a box of edge `edge`.
@@ -75,15 +95,32 @@ impl Ellipse {
     }
 }
 
-/// Calls `visit(i, j)` for the cells of a grid of `edge` whose centres lie in the ellipse and in the box `low … high`.
-pub fn for_each_cell(ellipse: &Ellipse, edge: f32, (low, high): (Vec2, Vec2), mut visit: impl FnMut(i32, i32)) {
-    let index = |x: f32| (x / edge - 0.5).ceil() as i32;
+/// Cells of one edge; `origin` is a corner of cell (0, 0).
+#[derive(Clone, Copy, Debug)]
+pub struct Grid {
+    pub origin: f32,
+    pub edge: f32,
+}
+
+impl Grid {
+    fn centre(&self, index: i32) -> f32 {
+        self.origin + (index as f32 + 0.5) * self.edge
+    }
+
+    /// First cell whose centre is not below x.
+    fn from(&self, x: f32) -> i32 {
+        ((x - self.origin) / self.edge - 0.5).ceil() as i32
+    }
+}
+
+/// Calls `visit(i, j, centre)` for the cells of a grid whose centres lie in the ellipse and in the box `low … high`.
+pub fn for_each_cell(ellipse: &Ellipse, grid: Grid, (low, high): (Vec2, Vec2), mut visit: impl FnMut(i32, i32, Vec2)) {
     let reach = ellipse.reach_y();
-    for j in index((ellipse.mean.y - reach).max(low.y))..index((ellipse.mean.y + reach).min(high.y)) {
-        let y = (j as f32 + 0.5) * edge;
+    for j in grid.from((ellipse.mean.y - reach).max(low.y))..grid.from((ellipse.mean.y + reach).min(high.y)) {
+        let y = grid.centre(j);
         if let Some((x0, x1)) = ellipse.span_x(y) {
-            for i in index(x0.max(low.x))..index(x1.min(high.x)) {
-                visit(i, j);
+            for i in grid.from(x0.max(low.x))..grid.from(x1.min(high.x)) {
+                visit(i, j, Vec2::new(grid.centre(i), y));
             }
         }
     }
@@ -135,29 +172,44 @@ pub fn for_each_tile(
     mut visit: impl FnMut(Slot),
 ) {
     let edge = level.tile_texels as f32;
-    let slot = |k: i32, n: u32, length: f32| {
-        let start = k.div_euclid(n as i32) as f32 * length + k.rem_euclid(n as i32) as f32 * edge;
-        let end = (start + edge).min((k.div_euclid(n as i32) + 1) as f32 * length);
-        (0.5 * (start + end), end - start)
-    };
-    let first = |x: f32, n: u32, length: f32| {
-        let period = (x / length).floor();
-        period as i32 * n as i32 + (((x - period * length) / edge) as i32).min(n as i32 - 1)
-    };
     let reach = ellipse.reach_y();
     let (y0, y1) = ((ellipse.mean.y - reach).max(low.y), (ellipse.mean.y + reach).min(high.y));
-    for j in first(y0, level.tiles_y, size.y)..=first(y1, level.tiles_y, size.y) {
-        let (y, tall) = slot(j, level.tiles_y, size.y);
-        let Some((x0, x1)) = ellipse.span_x(y) else { continue };
-        for i in first(x0.max(low.x), level.tiles_x, size.x)..=first(x1.min(high.x), level.tiles_x, size.x) {
-            let (x, wide) = slot(i, level.tiles_x, size.x);
-            let index = [i.rem_euclid(level.tiles_x as i32) as u32, j.rem_euclid(level.tiles_y as i32) as u32];
+    for row in slots(y0, y1, level.tiles_y, size.y, edge) {
+        let Some((x0, x1)) = ellipse.span_x(row.centre) else { continue };
+        for column in slots(x0.max(low.x), x1.min(high.x), level.tiles_x, size.x, edge) {
             visit(Slot {
-                tile: level.first_tile + index[1] * level.tiles_x + index[0],
-                index,
-                centre: Vec2::new(x, y),
-                size: Vec2::new(wide, tall),
+                tile: level.first_tile + row.index * level.tiles_x + column.index,
+                index: [column.index, row.index],
+                centre: Vec2::new(column.centre, row.centre),
+                size: Vec2::new(column.size, row.size),
             });
         }
     }
+}
+
+/// A tile's place on one axis.
+struct AxisSlot {
+    index: u32,
+    centre: f32,
+    size: f32,
+}
+
+/// The slots of `count` tiles of `edge`, repeated every `length`, that hold the points from `from` to `to`.
+fn slots(from: f32, to: f32, count: u32, length: f32, edge: f32) -> impl Iterator<Item = AxisSlot> {
+    let mut period = (from / length).floor() * length;
+    let mut index = (((from - period) / edge) as u32).min(count - 1);
+    std::iter::from_fn(move || {
+        let start = period + index as f32 * edge;
+        if start > to {
+            return None;
+        }
+        let end = (start + edge).min(period + length);
+        let slot = AxisSlot { index, centre: 0.5 * (start + end), size: end - start };
+        index += 1;
+        if index == count {
+            index = 0;
+            period += length;
+        }
+        Some(slot)
+    })
 }

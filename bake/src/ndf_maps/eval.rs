@@ -188,8 +188,8 @@ impl LobeTerm {
     /// `jacobian`, with the intrinsic roughness `sigma`, seen through the palette's `normal_to_local`. The box has
     /// `weight` of the footprint, whose logarithm has the gradient `gradient` there (per example texel).
     ///
-    /// What would leave the disk is put back: across a rim that is straight at the lobe's scale, Φ(distance / σ) of the
-    /// mass stays inside.
+    /// What would leave the disk is put back: across a rim that is straight at the scale of a quarter of the box,
+    /// Φ(distance / σ) of the mass stays inside.
     pub fn new(
         (s, jacobian): (Vec2, Mat2),
         edge: f32,
@@ -215,7 +215,7 @@ impl LobeTerm {
         let tilt = Vec2::new(tilt.x, tilt.y.copysign(tilt.y * height));
         // The places in the box that `density` infers spread less than the box where the lobe blurs it.
         let inferred = tilt * half / (half * half + 3.0).map(f32::sqrt);
-        let normalised = inside_disk(s, a, b, sigma) * mean_exp(inferred.x) * mean_exp(inferred.y);
+        let normalised = inside_disk(s, long, short, sigma) * mean_exp(inferred.x) * mean_exp(inferred.y);
         LobeTerm {
             mean: normal_to_local.inverse() * s,
             to_unit,
@@ -255,13 +255,27 @@ fn mean_exp(t: f32) -> f32 {
     if q < 1.0 { 1.0 + q / 6.0 * (1.0 + q / 20.0 * (1.0 + q / 42.0)) } else { t.sinh() / t }
 }
 
-/// Mass inside the disk of a lobe around `s` with edges `a` and `b`, as across a straight rim.
-fn inside_disk(s: Vec2, a: Vec2, b: Vec2, sigma: f32) -> f32 {
+/// Mass inside the disk of a lobe around `s` whose longer edge is `long`: the mean over pieces of that edge, each as
+/// across a straight rim.
+fn inside_disk(s: Vec2, long: Vec2, short: Vec2, sigma: f32) -> f32 {
+    const PIECES: i32 = 4;
+    if s.length() + 0.5 * (long.length() + short.length()) + 5.0 * sigma < 1.0 {
+        return 1.0;
+    }
+    let piece = long / PIECES as f32;
+    let mut sum = 0.0;
+    for k in 0..PIECES {
+        sum += inside_rim(s + piece * (k as f32 + 0.5 - 0.5 * PIECES as f32), piece, short, sigma);
+    }
+    (sum / PIECES as f32).max(1e-3)
+}
+
+/// Mass on the disk's side of the rim next to `s`, as if that were straight.
+fn inside_rim(s: Vec2, a: Vec2, b: Vec2, sigma: f32) -> f32 {
     let radius = s.length();
-    let distance = 1.0 - radius;
     let outward = if radius > 0.0 { s / radius } else { Vec2::X };
     let variance = sigma * sigma + (outward.dot(a).powi(2) + outward.dot(b).powi(2)) / 12.0;
-    if distance * distance > 25.0 * variance { 1.0 } else { normal_cdf(distance / variance.sqrt()).max(1e-3) }
+    normal_cdf((1.0 - radius) / variance.sqrt())
 }
 
 /// A box of half width `half` and area 1, convolved with the unit Gaussian, at `x`.

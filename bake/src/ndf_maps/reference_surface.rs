@@ -23,6 +23,17 @@ pub struct SurfaceReference<'a> {
     mass: DiskMass,
     /// Largest length of ∂s/∂u on the example, per texel.
     steepest: f64,
+    /// What every sub-region of the repeating surface shows, row by row; empty when tiled.
+    owners: Vec<Owner>,
+}
+
+/// Whose example a sub-region shows.
+struct Owner {
+    class: usize,
+    /// The owner's centre on the surface, from the sub-region's middle.
+    centre: DVec2,
+    /// Example point that lies at the centre.
+    offset: DVec2,
 }
 
 /// What shows at a point of the surface: palette entry and position in the example, in texels within its bounds.
@@ -38,37 +49,24 @@ impl<'a> SurfaceReference<'a> {
                 steepest = steepest.max(s.distance(map.texel(i + 1, j))).max(s.distance(map.texel(i, j + 1)));
             }
         }
-        SurfaceReference { map, material, roughness, mass: DiskMass::new(roughness), steepest }
+        let owners = find_owners(map, material);
+        SurfaceReference { map, material, roughness, mass: DiskMass::new(roughness), steepest, owners }
     }
 
     /// Palette entry and example position that show at the surface point `u`.
     pub fn shown_at(&self, u: DVec2) -> Shown {
-        let size = DVec2::new(self.map.width as f64, self.map.height as f64);
+        let size = example_size(self.map);
         let within = |x: DVec2| x - (x / size).floor() * size;
         match self.material.placement.params.kind {
             PlacementKind::Tiled => (0, within(self.to_local(0) * u)),
             PlacementKind::Stochastic { cells_x, cells_y, cell_texels, .. } => {
-                let edge = cell_texels as f64;
-                let region = ((u / (0.5 * edge)).floor() + 0.5) * (0.5 * edge);
-                let home = (region / edge).floor();
-                let mut best = (f64::INFINITY, 0, DVec2::ZERO);
-                for dy in -2..=2 {
-                    for dx in -2..=2 {
-                        let cell = home + DVec2::new(dx as f64, dy as f64);
-                        let x = (cell.x as i64).rem_euclid(cells_x as i64);
-                        let y = (cell.y as i64).rem_euclid(cells_y as i64);
-                        let at = (y * cells_x as i64 + x) as usize;
-                        let packed = self.material.placement.noise[at].centre;
-                        let centre = (cell + unorm_pair(packed)) * edge;
-                        let distance = centre.distance(region);
-                        if distance < best.0 {
-                            best = (distance, at, centre);
-                        }
-                    }
-                }
-                let owner = self.material.placement.noise[best.1];
-                let class = (owner.class_and_owners & 0xff) as usize;
-                (class, within(self.to_local(class) * (u - best.2) + unorm_pair(owner.offset) * size))
+                let edge = 0.5 * cell_texels as f64;
+                let region = (u / edge).floor();
+                let x = (region.x as i64).rem_euclid(2 * cells_x as i64);
+                let y = (region.y as i64).rem_euclid(2 * cells_y as i64);
+                let owner = &self.owners[(y * 2 * cells_x as i64 + x) as usize];
+                let from_centre = u - (region + 0.5) * edge - owner.centre;
+                (owner.class, within(self.to_local(owner.class) * from_centre + owner.offset))
             }
         }
     }
@@ -161,6 +159,46 @@ impl<'a> SurfaceReference<'a> {
     fn to_surface_normal(&self, class: usize) -> DMat2 {
         rows(self.material.placement.palette[class].normal_to_local).inverse()
     }
+}
+
+/// The owner of every sub-region: the nearest centre, among the cells around, to the sub-region's middle.
+fn find_owners(map: &NormalMap, material: &Material) -> Vec<Owner> {
+    let PlacementKind::Stochastic { cells_x, cells_y, cell_texels, .. } = material.placement.params.kind else {
+        return Vec::new();
+    };
+    let edge = cell_texels as f64;
+    let mut owners = Vec::new();
+    for j in 0..2 * cells_y {
+        for i in 0..2 * cells_x {
+            let middle = (DVec2::new(i as f64, j as f64) + 0.5) * (0.5 * edge);
+            let home = (middle / edge).floor();
+            let mut best = (f64::INFINITY, 0, DVec2::ZERO);
+            for dy in -2..=2 {
+                for dx in -2..=2 {
+                    let cell = home + DVec2::new(dx as f64, dy as f64);
+                    let x = (cell.x as i64).rem_euclid(cells_x as i64);
+                    let y = (cell.y as i64).rem_euclid(cells_y as i64);
+                    let at = (y * cells_x as i64 + x) as usize;
+                    let centre = (cell + unorm_pair(material.placement.noise[at].centre)) * edge;
+                    let distance = centre.distance(middle);
+                    if distance < best.0 {
+                        best = (distance, at, centre);
+                    }
+                }
+            }
+            let owner = material.placement.noise[best.1];
+            owners.push(Owner {
+                class: (owner.class_and_owners & 0xff) as usize,
+                centre: best.2 - middle,
+                offset: unorm_pair(owner.offset) * example_size(map),
+            });
+        }
+    }
+    owners
+}
+
+fn example_size(map: &NormalMap) -> DVec2 {
+    DVec2::new(map.width as f64, map.height as f64)
 }
 
 fn rows(m: [f32; 4]) -> DMat2 {

@@ -6,22 +6,21 @@
 //! for its owner; a footprint over many cells sees the top tile under each transform, by the share of cells that use it,
 //! where the paper visits every example.
 
-use super::ellipse::{EVERYWHERE, Ellipse, FINEST_TEXELS, REACH, Slot, for_each_cell, for_each_tile};
+use super::ellipse::{EVERYWHERE, Ellipse, FINEST_TEXELS, Grid, REACH, Slot, for_each_cell, for_each_tile};
 use super::eval::{LobeTerm, Material, Terms, TileTerm, matrix};
 use crate::footprint::Footprint;
 use glam::{DVec2, Mat2, Vec2};
 use glint_formats::ndf_maps::{Level, PlacementKind};
 
-/// Edge of the boxes that are seen as lobes, at most, in example texels: quarter texels lie in one bilinear cell each.
-const LOBE_TEXELS: f32 = 0.5;
-/// Edge of a box seen as a lobe in standard deviations of the footprint's minor axis.
-const LOBE_SIGMAS: f32 = 0.5;
-/// Terms of one kind at most, in the area of the footprint's ellipse.
-const MAX_TERMS: f32 = 2048.0;
+/// Edge of the boxes that are seen as lobes, at most, in example texels: those boxes are the bilinear cells.
+const LOBE_TEXELS: f32 = 1.0;
 /// Sub-regions of a stochastic surface that a footprint visits at most.
-const MAX_REGIONS: f32 = 256.0;
+const MAX_REGIONS: f32 = 64.0;
 /// From this minor axis on (in example edges) shares of tiled examples are even to 1.4 % and the top tile is enough.
 const TOP_TILE_SIGMA: f32 = 0.5;
+
+/// A tile that a sub-region cuts is split from this share on, relative to an even share of `max_terms`.
+const SPLIT_FROM: f32 = 2.0;
 /// From this minor axis on (in cells) a stochastic surface is seen as shares of transforms.
 const CLASS_SIGMA_CELLS: f32 = 1.0;
 
@@ -30,13 +29,18 @@ const CLASS_SIGMA_CELLS: f32 = 1.0;
 pub struct EvalSettings {
     /// Largest tile in standard deviations of the footprint's minor axis.
     pub tile_sigmas: f32,
+    /// Largest box that is seen as one lobe, likewise.
+    pub lobe_sigmas: f32,
+    /// Tiles or lobes in the area of the footprint's ellipse, at most, but for those that sub-regions cut; a footprint that
+    /// would need more sees coarser ones.
+    pub max_terms: u32,
     /// How often a tile that a sub-region shows only in part is split.
     pub splits: u32,
 }
 
 impl Default for EvalSettings {
     fn default() -> EvalSettings {
-        EvalSettings { tile_sigmas: 1.0, splits: 1 }
+        EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 0.75, max_terms: 128, splits: 1 }
     }
 }
 
@@ -98,8 +102,7 @@ impl Material {
             }
             Detail::Boxes(edge) => {
                 let widened = ellipse.widened(edge);
-                for_each_cell(&widened, edge, EVERYWHERE, |i, j| {
-                    let centre = Vec2::new(i as f32 + 0.5, j as f32 + 0.5) * edge;
+                for_each_cell(&widened, boxes(edge), EVERYWHERE, |_, _, centre| {
                     self.add_lobe(&ellipse, centre, edge, 0, edge * edge * widened.density(centre), gathered);
                 });
                 if gathered.share <= 0.0 {
@@ -111,8 +114,8 @@ impl Material {
 
     /// The coarsest tiles or boxes that resolve a footprint in the example.
     fn detail_for(&self, ellipse: &Ellipse, settings: EvalSettings) -> Detail {
-        // Long thin footprints take coarser pieces rather than more than MAX_TERMS of them.
-        let least = 2.0 * REACH * (ellipse.minor.max(FINEST_TEXELS) * ellipse.major / MAX_TERMS).sqrt();
+        // Long thin footprints take coarser pieces rather than more than `max_terms` of them.
+        let least = 2.0 * REACH * (ellipse.minor.max(FINEST_TEXELS) * ellipse.major / settings.max_terms as f32).sqrt();
         let mut chosen = None;
         for level in &self.maps.params.levels {
             let edge = level.tile_texels as f32;
@@ -128,7 +131,7 @@ impl Material {
             return Detail::Tiles(level);
         }
         let mut edge = LOBE_TEXELS;
-        while edge > FINEST_TEXELS && edge > LOBE_SIGMAS * ellipse.minor && 0.5 * edge >= least {
+        while edge > FINEST_TEXELS && edge > settings.lobe_sigmas * ellipse.minor && 0.5 * edge >= least {
             edge *= 0.5;
         }
         Detail::Boxes(edge)
@@ -150,12 +153,17 @@ impl Material {
         let region = 0.5 * cells.edge;
         let regions = (2.0 * REACH).powi(2) * ellipse.major * ellipse.minor.max(region) / (region * region);
         if ellipse.minor >= CLASS_SIGMA_CELLS * cells.edge || regions > MAX_REGIONS {
-            return self.gather_classes(&ellipse, cells, gathered);
+            return self.gather_classes(&ellipse, cells, settings, gathered);
         }
-        // A sub-region counts when its centre is near the footprint, widened by the sub-region's diagonal.
-        for_each_cell(&ellipse.widened(region * 1.5), region, EVERYWHERE, |i, j| {
-            self.gather_region(&footprint, cells, (i, j), settings, gathered);
-        });
+        // A sub-region counts when its centre is near the footprint, widened so that a point reaches its corners.
+        for_each_cell(
+            &ellipse.widened(region * 1.2),
+            Grid { origin: 0.0, edge: region },
+            EVERYWHERE,
+            |_, _, middle| {
+                self.gather_region(&ellipse, cells, middle, settings, gathered);
+            },
+        );
         if gathered.share <= 0.0 {
             let (class, centre, offset) = self.owner_at(ellipse.mean, cells);
             let local = self.position_to_local(class) * (ellipse.mean - centre) + offset;
@@ -163,39 +171,39 @@ impl Material {
         }
     }
 
-    /// What sub-region (i, j) shows of its owner under the footprint.
+    /// What the sub-region around `middle` shows of its owner under the footprint.
     fn gather_region(
         &self,
-        footprint: &Footprint,
+        footprint: &Ellipse,
         cells: Cells,
-        at: (i32, i32),
+        middle: Vec2,
         settings: EvalSettings,
         gathered: &mut Gathered,
     ) {
-        let region = 0.5 * cells.edge;
-        let middle = Vec2::new(at.0 as f32 + 0.5, at.1 as f32 + 0.5) * region;
         let (class, centre, offset) = self.owner_at(middle, cells);
         let to_local = self.position_to_local(class);
         let shift = offset - to_local * centre;
         let view = RegionView {
-            ellipse: Ellipse::new(&footprint.transformed(to_local.as_dmat2(), shift.as_dvec2())),
+            ellipse: footprint.transformed(to_local, shift),
             middle: to_local * middle + shift,
             to_surface: to_local.inverse(),
-            half: 0.5 * region,
+            scale: to_local.determinant().abs().sqrt().recip(),
+            half: 0.25 * cells.edge,
             extent: to_local.x_axis.abs() + to_local.y_axis.abs(),
             class,
         };
         match self.detail_for(&view.ellipse, settings) {
             Detail::Tiles(level) => {
-                let widened = view.ellipse.widened(level.tile_texels as f32);
-                for_each_tile(&widened, &level, self.size(), view.span(level.tile_texels as f32), |slot| {
-                    self.add_visible(&view, &level, slot, settings.splits, gathered);
+                let edge = level.tile_texels as f32;
+                let (low, high) = view.span(edge);
+                let holding = (low + 0.5 * edge, high - 0.5 * edge);
+                for_each_tile(&view.ellipse.widened(edge), &level, self.size(), holding, |slot| {
+                    self.add_visible(&view, &level, slot, settings, gathered);
                 });
             }
             Detail::Boxes(edge) => {
                 let widened = view.ellipse.widened(edge);
-                for_each_cell(&widened, edge, view.span(edge), |i, j| {
-                    let centre = Vec2::new(i as f32 + 0.5, j as f32 + 0.5) * edge;
+                for_each_cell(&widened, boxes(edge), view.span(edge), |_, _, centre| {
                     let weight = edge * edge * widened.density(centre) * view.visible(centre, edge);
                     if weight > 0.0 {
                         self.add_lobe(&view.ellipse, centre, edge, view.class, weight, gathered);
@@ -207,20 +215,28 @@ impl Material {
 
     /// Adds a tile by how much of it the sub-region shows; one that is cut is split in its four children first, as often
     /// as `splits` allows.
-    fn add_visible(&self, view: &RegionView, level: &Level, slot: Slot, splits: u32, gathered: &mut Gathered) {
+    fn add_visible(
+        &self,
+        view: &RegionView,
+        level: &Level,
+        slot: Slot,
+        settings: EvalSettings,
+        gathered: &mut Gathered,
+    ) {
         let edge = slot.size.x.max(slot.size.y);
         let visible = view.visible(slot.centre, edge);
         if visible <= 0.0 {
             return;
         }
+        let weight = slot.area() * view.ellipse.widened(edge).density(slot.centre) * visible;
         let index = self.maps.params.levels.iter().position(|l| l.first_tile == level.first_tile).unwrap_or(0);
-        if visible >= 1.0 || splits == 0 || index == 0 {
-            let weight = slot.area() * view.ellipse.widened(edge).density(slot.centre) * visible;
+        if visible >= 1.0 || settings.splits == 0 || index == 0 || weight * (settings.max_terms as f32) < SPLIT_FROM {
             return gathered.add_tile(TileTerm { tile: slot.tile, class: view.class, weight });
         }
         let finer = self.maps.params.levels[index - 1];
+        let less = EvalSettings { splits: settings.splits - 1, ..settings };
         for child in slot.children(level, &finer) {
-            self.add_visible(view, &finer, child, splits - 1, gathered);
+            self.add_visible(view, &finer, child, less, gathered);
         }
     }
 
@@ -239,8 +255,8 @@ impl Material {
     }
 
     /// The top tile under every transform, by the share of cells that use it.
-    fn gather_classes(&self, ellipse: &Ellipse, cells: Cells, gathered: &mut Gathered) {
-        let least = 2.0 * REACH * (ellipse.minor * ellipse.major / MAX_TERMS).sqrt();
+    fn gather_classes(&self, ellipse: &Ellipse, cells: Cells, settings: EvalSettings, gathered: &mut Gathered) {
+        let least = 2.0 * REACH * (ellipse.minor * ellipse.major / settings.max_terms as f32).sqrt();
         let mut mip = 0;
         while 1 << mip < cells.count && cells.edge * (2 << mip) as f32 <= ellipse.minor.max(least) {
             mip += 1;
@@ -252,8 +268,7 @@ impl Material {
         if 1 << mip == cells.count {
             self.add_shares(mip, 0, 0, 1.0, cells, &mut shares);
         } else {
-            for_each_cell(&widened, block, EVERYWHERE, |i, j| {
-                let centre = Vec2::new(i as f32 + 0.5, j as f32 + 0.5) * block;
+            for_each_cell(&widened, Grid { origin: 0.0, edge: block }, EVERYWHERE, |i, j, centre| {
                 self.add_shares(mip, i, j, widened.density(centre) * block * block, cells, &mut shares);
             });
         }
@@ -307,6 +322,8 @@ struct RegionView {
     /// The sub-region's middle in example texels.
     middle: Vec2,
     to_surface: Mat2,
+    /// Surface texels an example texel, by area.
+    scale: f32,
     /// Half the sub-region's edge in surface texels.
     half: f32,
     /// Half the box, in example texels, around a sub-region of half edge 1.
@@ -317,7 +334,7 @@ struct RegionView {
 impl RegionView {
     /// How much of a piece of `edge` around `x` lies in the sub-region, as if it were a box along the surface's axes.
     fn visible(&self, x: Vec2, edge: f32) -> f32 {
-        let edge = edge * self.to_surface.determinant().abs().sqrt();
+        let edge = edge * self.scale;
         let d = (self.to_surface * (x - self.middle)).abs();
         let inside = ((Vec2::splat(self.half + 0.5 * edge) - d) / edge).clamp(Vec2::ZERO, Vec2::ONE);
         inside.x * inside.y
@@ -325,7 +342,7 @@ impl RegionView {
 
     /// Box in example texels that holds the centres of all pieces of `edge` that the sub-region may show.
     fn span(&self, edge: f32) -> (Vec2, Vec2) {
-        let reach = self.extent * self.half + edge;
+        let reach = self.extent * (self.half + 0.5 * edge * self.scale);
         (self.middle - reach, self.middle + reach)
     }
 }
@@ -341,6 +358,11 @@ impl Cells {
     fn index(&self, x: i32, y: i32) -> usize {
         (y.rem_euclid(self.count) * self.count + x.rem_euclid(self.count)) as usize
     }
+}
+
+/// Boxes of an edge that divides a texel; those of a whole texel are the bilinear cells.
+fn boxes(edge: f32) -> Grid {
+    Grid { origin: -0.5, edge }
 }
 
 /// The footprint moved by whole periods so that its centre lies in the first one.

@@ -43,6 +43,11 @@ impl Pack {
         self.bytes.len() as u64
     }
 
+    /// The whole file.
+    pub fn file_bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
     /// All sections in the order of the table, those of unknown kinds too.
     pub fn sections(&self) -> &[SectionEntry] {
         &self.structure.entries

@@ -4,14 +4,14 @@ use glam::{DVec2, Vec2};
 use glint_bake_core::error::Result;
 use glint_bake_core::footprint::Footprint;
 use glint_bake_core::ndf_maps::bake::{self, NdfMapsOptions};
-use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::eval::{Material, Terms};
 use glint_bake_core::ndf_maps::measure::{FootprintErrors, footprint_errors};
 use glint_bake_core::ndf_maps::placement::{self, PlacementOptions, StochasticOptions};
 use glint_bake_core::ndf_maps::surface::EvalSettings;
 use glint_bake_core::ndf_maps::transform::TransformRanges;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
-use glint_bake_core::quality::sweep::{ANISOTROPIES, SIGMAS_TEXELS, footprints};
+use glint_bake_core::quality::sweep::{ANISOTROPIES, FOOTPRINTS, SIGMAS_TEXELS, footprints as sweep_footprints};
 use glint_formats::ndf_maps::{DensityStorage, MeasuredError};
 use std::time::Instant;
 
@@ -47,8 +47,7 @@ pub struct Size {
 
 /// One run-time setting on the stochastic surface: means over round footprints of all sizes.
 pub struct Dial {
-    pub tile_sigmas: f32,
-    pub splits: u32,
+    pub settings: EvalSettings,
     pub mean_error: f64,
     pub cost: Cost,
 }
@@ -61,6 +60,14 @@ pub struct Cost {
     /// To evaluate them for one direction.
     pub query: f64,
 }
+
+/// Run-time settings from fast to accurate; the third is the default.
+const DIAL: [EvalSettings; 4] = [
+    EvalSettings { tile_sigmas: 4.0, lobe_sigmas: 1.0, max_terms: 32, splits: 0 },
+    EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 1.0, max_terms: 64, splits: 0 },
+    EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 0.75, max_terms: 128, splits: 1 },
+    EvalSettings { tile_sigmas: 0.5, lobe_sigmas: 0.5, max_terms: 2048, splits: 2 },
+];
 
 /// Measures an example with `count` footprints a size.
 pub fn example(map: &NormalMap, count: u32) -> Result<Example> {
@@ -82,8 +89,8 @@ pub fn example(map: &NormalMap, count: u32) -> Result<Example> {
             }
         }
         if name == "stochastic" {
-            for (tile_sigmas, splits) in [(2.0, 0), (1.0, 0), (1.0, 1), (0.5, 1)] {
-                dial.push(dial_setting(map, &material, EvalSettings { tile_sigmas, splits }, count.div_ceil(8)));
+            for settings in DIAL {
+                dial.push(dial_setting(map, &material, settings, count.div_ceil(8)));
             }
         }
     }
@@ -91,8 +98,7 @@ pub fn example(map: &NormalMap, count: u32) -> Result<Example> {
 }
 
 fn dial_setting(map: &NormalMap, material: &Material, settings: EvalSettings, count: u32) -> Dial {
-    let mut dial =
-        Dial { tile_sigmas: settings.tile_sigmas, splits: settings.splits, mean_error: 0.0, cost: Cost::default() };
+    let mut dial = Dial { settings, mean_error: 0.0, cost: Cost::default() };
     let share = 1.0 / SIGMAS_TEXELS.len() as f64;
     for sigma in SIGMAS_TEXELS {
         let (errors, cost) = measured(map, material, sigma, 1.0, count, settings);
@@ -113,34 +119,39 @@ fn measured(
 ) -> (FootprintErrors, Cost) {
     const SEED: u64 = 5;
     let extent = DVec2::new(map.width as f64, map.height as f64) * 32.0;
-    let footprints = footprints(sigma, anisotropy, extent, count, SEED);
-    (footprint_errors(map, material, &footprints, settings), cost(material, &footprints, settings))
+    let footprints = sweep_footprints(sigma, anisotropy, extent, count, SEED);
+    let errors = footprint_errors(map, material, &footprints, settings);
+    // The same 64 places whatever was asked, so that costs compare between reports.
+    let places = sweep_footprints(sigma, anisotropy, extent, FOOTPRINTS, SEED);
+    (errors, cost(material, &places, settings))
 }
 
-/// Time of a footprint and of a query, over directions spread where the whole example's NDF lies.
+/// Time of a footprint and of a query, over directions spread where the whole example's NDF lies: the least of some
+/// rounds, because other work on the machine only ever adds to it.
 fn cost(material: &Material, footprints: &[Footprint], settings: EvalSettings) -> Cost {
-    const REPEATS: usize = 8;
-    const SIDE: usize = 12;
+    const ROUNDS: usize = 16;
+    const SIDE: usize = 8;
     let top = material.maps.tiles[material.maps.tiles.len() - 1];
     let low = Vec2::from(top.origin);
     let size = Vec2::new(top.width() as f32, top.height() as f32) / Vec2::from(top.inv_spacing);
-    let begin = Instant::now();
-    let mut terms = Vec::new();
-    for _ in 0..REPEATS {
-        terms = footprints.iter().map(|footprint| material.gather(footprint, settings)).collect();
-    }
-    let gather = begin.elapsed().as_secs_f64() * 1e6 / (REPEATS * footprints.len()) as f64;
-    let begin = Instant::now();
-    let mut sum = 0.0;
-    for terms in &terms {
-        for k in 0..SIDE * SIDE {
-            let at = Vec2::new((k % SIDE) as f32 + 0.5, (k / SIDE) as f32 + 0.5) / SIDE as f32;
-            sum += material.density(terms, low + at * size);
+    let mut least = Cost { gather: f64::INFINITY, query: f64::INFINITY };
+    for _ in 0..ROUNDS {
+        let begin = Instant::now();
+        let terms: Vec<Terms> = footprints.iter().map(|footprint| material.gather(footprint, settings)).collect();
+        least.gather = least.gather.min(begin.elapsed().as_secs_f64() * 1e6 / footprints.len() as f64);
+        let begin = Instant::now();
+        let mut sum = 0.0;
+        for terms in &terms {
+            for k in 0..SIDE * SIDE {
+                let at = Vec2::new((k % SIDE) as f32 + 0.5, (k / SIDE) as f32 + 0.5) / SIDE as f32;
+                sum += material.density(terms, low + at * size);
+            }
         }
+        std::hint::black_box(sum);
+        let queries = (footprints.len() * SIDE * SIDE) as f64;
+        least.query = least.query.min(begin.elapsed().as_secs_f64() * 1e6 / queries);
     }
-    std::hint::black_box(sum);
-    let query = begin.elapsed().as_secs_f64() * 1e6 / (footprints.len() * SIDE * SIDE) as f64;
-    Cost { gather, query }
+    least
 }
 
 /// Bakes with every storage and several errors asked, at the roughnesses of the accuracy targets.

@@ -1,7 +1,8 @@
 //! A report's tables, in Markdown.
 
-use super::measure::{Example, Size};
+use super::measure::{Dial, Example, Size};
 use glint_bake_core::normal_map::NormalMap;
+use glint_bake_core::quality::sweep::ANISOTROPIES;
 use std::fmt::Write;
 
 /// Head of the report.
@@ -60,24 +61,35 @@ pub fn example(name: &str, map: &NormalMap, measured: &Example, plot: &str) -> S
         let rows: Vec<&Size> = measured.sizes.iter().filter(|s| s.placement == placement).collect();
         let mean = rows.iter().map(|s| s.errors.e1.mean).sum::<f64>() / rows.len() as f64;
         let total = |s: &&&Size| s.cost.gather + s.cost.query;
-        for anisotropy in [1.0, 4.0] {
+        for anisotropy in ANISOTROPIES {
             let costs: Vec<f64> = rows.iter().filter(|s| s.anisotropy == anisotropy).map(|s| total(&s)).collect();
-            let dearest = costs.iter().fold(0.0f64, |a, b| a.max(*b));
+            let dearest = costs.iter().copied().fold(0.0, f64::max);
+            let cheapest = costs.iter().copied().fold(f64::INFINITY, f64::min);
             let _ = writeln!(
                 text,
-                "\n{placement}, anisotropy {anisotropy}: the dearest size costs {:.1} times the smallest.",
-                dearest / costs[0]
+                "\n{placement}, anisotropy {anisotropy}: a footprint and a query of the dearest size cost {:.2} times \
+                 those of the smallest, of the cheapest {:.2} times.",
+                dearest / costs[0],
+                cheapest / costs[0]
             );
         }
         let _ = writeln!(text, "\n{placement}: mean E₁ over all sizes {}.", percent(mean));
     }
     text += "\nRun-time settings on the stochastic surface, means over round footprints of all sizes.\n\n\
-             | tile edge at most, in σ | splits | E₁ mean | footprint µs | query µs |\n\
-             | ---: | ---: | ---: | ---: | ---: |\n";
-    for d in &measured.dial {
-        let (error, cost) = (percent(d.mean_error), d.cost);
-        let _ =
-            writeln!(text, "| {} | {} | {error} | {:.1} | {:.2} |", d.tile_sigmas, d.splits, cost.gather, cost.query);
+             | tile edge at most, in σ | lobe's box at most, in σ | terms at most | splits | E₁ mean | footprint µs | query µs |\n\
+             | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+    for Dial { settings: s, mean_error, cost } in &measured.dial {
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {} | {:.1} | {:.2} |",
+            s.tile_sigmas,
+            s.lobe_sigmas,
+            s.max_terms,
+            s.splits,
+            percent(*mean_error),
+            cost.gather,
+            cost.query
+        );
     }
     text
 }

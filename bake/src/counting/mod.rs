@@ -1,0 +1,27 @@
+//! Counting: how many of N facets reflect each of K radiance levels, in time that does not grow with N.
+//!
+//! Method: Kneiphof and Klein 2025, "Real-Time Image-based Lighting of Glints", section 6 and algorithm 1. Counts of
+//! K levels are a multinomial draw, made of K − 1 binomial ones in a binary tree ([`multinomial()`]). The paper draws
+//! a binomial number from gates and a clamped Gaussian ([`paper`], kept as a baseline). Here it is the inverse of the
+//! distribution function at one uniform number: exact where few facets are hit, a Cornish–Fisher expansion around the
+//! Gaussian ([`normal`]) where many are ([`binomial()`]). Both rest on powers (1 − p)^N that hold in f32
+//! ([`pow1m()`]). [`reference`](mod@reference) says the same from the definitions in f64, and [`quality`] measures one
+//! by the other.
+//!
+//! What deviates from the paper, and why, stands on top of each file and in `docs/METHODS.md`. The main points:
+//! - counts are whole numbers, their mean is Np, and their variance that of the binomial distribution;
+//! - one random word a binomial draw instead of two numbers, and counts change monotonously with p for a fixed word;
+//! - a fractional N is a random whole number with mean N, rounded once at the root of the tree and never below it.
+
+pub mod binomial;
+pub mod multinomial;
+pub mod normal;
+pub mod paper;
+pub mod pow1m;
+pub mod quality;
+pub mod reference;
+pub mod wgsl;
+
+pub use binomial::{binomial, whole_binomial};
+pub use multinomial::{MAX_LEVELS, multinomial};
+pub use pow1m::{one_minus_pow1m, pow1m};
