@@ -9,8 +9,8 @@ use super::kernel::{Lobe, roughness_of_mips};
 use super::levels::{Seen, fewest, log_uniform, optimal, shares};
 use super::options::{EnvironmentOptions, LevelCount};
 use super::prefilter::{OF_SHARP, SHARP, filter_mip};
-use super::quantise;
 use super::quality;
+use super::quantise;
 use super::tables::Environment;
 use super::tree::{BASE_CHANNELS, Tree};
 use crate::error::{BakeError, Result};
@@ -52,13 +52,8 @@ pub fn bake(
         max_error: options.max_error,
         measured: MeasuredError { second_moment, ..MeasuredError::default() },
     };
-    let mut environment = Environment {
-        params,
-        radiance: Vec::new(),
-        indicators: Vec::new(),
-        colours: Vec::new(),
-        albedo: Vec::new(),
-    };
+    let mut environment =
+        Environment { params, radiance: Vec::new(), indicators: Vec::new(), colours: Vec::new(), albedo: Vec::new() };
     let mips = filtered_mips(image, options, &environment.params, progress);
     round(&mips, &mut environment);
     environment.params.measured.energy = energy_error(image, &mips.texels[0], mips.channels);

@@ -4,7 +4,7 @@
 //! image ([`image`]) becomes a cube ([`cube`]) whose mips are filtered with a GGX lobe each ([`kernel`], [`prefilter`]):
 //! radiance, its square, and the share of each of a few radiance levels ([`levels`]). At run time ([`eval`]) the
 //! shares are the probabilities that a facet reflects each level, scaled by areas that depend on view angle and
-//! roughness only ([`albedo`]). [`reference`] sums over every pixel in f64, and [`quality`] measures one by the other.
+//! roughness only ([`albedo`]), and [`glints`] draws. [`reference`] sums over every pixel in f64, and [`quality`] measures one by the other.
 //!
 //! What deviates from the paper, and why, stands on top of each file and in `docs/METHODS.md`. The main points:
 //! - filtering to an error bound by a tree of the source, without samples ([`tree`], [`blocks`], [`filter_sum`]);
@@ -19,6 +19,7 @@ pub mod blocks;
 pub mod cube;
 pub mod eval;
 pub mod filter_sum;
+pub mod glints;
 pub mod image;
 pub mod kernel;
 pub mod levels;
@@ -27,6 +28,7 @@ pub mod prefilter;
 pub mod quality;
 pub mod quantise;
 pub mod reference;
+pub mod reference_glints;
 pub mod sections;
 pub mod tables;
 pub mod tree;
