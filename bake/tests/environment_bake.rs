@@ -88,7 +88,10 @@ fn no_face_is_flipped_or_swapped() {
                 let found = environment.radiance_texel(mip, face, i, j);
                 for c in 0..3 {
                     let difference = f64::from(found[c]) - expected[c];
-                    assert!(difference.abs() < 0.03, "mip {mip} face {face} ({i}, {j}): {found:?}, expected {expected}");
+                    assert!(
+                        difference.abs() < 0.03,
+                        "mip {mip} face {face} ({i}, {j}): {found:?}, expected {expected}"
+                    );
                 }
             }
         }
@@ -104,9 +107,7 @@ fn the_image_s_middle_is_minus_z_and_right_of_it_is_plus_x() {
     let image = EnvironmentImage::new(64, 32, pixels).unwrap().0;
     let environment = baked(&image, &options(2));
     let brightest = |c: usize| {
-        let value = |face: usize| {
-            (0..256).map(|k| environment.radiance_texel(0, face, k % 16, k / 16)[c]).sum::<f32>()
-        };
+        let value = |face: usize| (0..256).map(|k| environment.radiance_texel(0, face, k % 16, k / 16)[c]).sum::<f32>();
         (0..6).max_by(|a, b| value(*a).total_cmp(&value(*b))).unwrap()
     };
     assert_eq!([brightest(0), brightest(1), brightest(2)], [5, 0, 2]);

@@ -157,7 +157,10 @@ fn look_ups_are_smooth_across_edges_and_mips() {
     let mut pixels = Vec::new();
     for y in 0..32 {
         for x in 0..64 {
-            let d = direction(2.0 * PI * ((f64::from(x) + 0.5) / 64.0 - 0.5), (PI * (0.5 - (f64::from(y) + 0.5) / 32.0)).sin());
+            let d = direction(
+                2.0 * PI * ((f64::from(x) + 0.5) / 64.0 - 0.5),
+                (PI * (0.5 - (f64::from(y) + 0.5) / 32.0)).sin(),
+            );
             pixels.push([2.0 + d.x as f32, 2.0 + d.y as f32, 2.0 + d.z as f32]);
         }
     }
@@ -227,7 +230,11 @@ fn areas_agree_with_closed_forms_and_with_sums_over_light() {
             let (albedo, reflecting) = areas_by_directions(cos_o, alpha, f0);
             let found = f0 * table.scale + table.bias;
             assert!((found / albedo - 1.0).abs() < 4e-3, "albedo at {cos_o} {alpha} {f0}: {found} {albedo}");
-            assert!((table.reflecting / reflecting - 1.0).abs() < 4e-3, "{cos_o} {alpha}: {} {reflecting}", table.reflecting);
+            assert!(
+                (table.reflecting / reflecting - 1.0).abs() < 4e-3,
+                "{cos_o} {alpha}: {} {reflecting}",
+                table.reflecting
+            );
         }
     }
     let environment = baked(&image(), 2, false);

@@ -74,7 +74,13 @@ pub struct Args {
     #[arg(long, value_name = "CHOICE", default_value = "optimal", hide_possible_values = true, help_heading = "Bake")]
     pub level_choice: LevelChoiceArg,
     /// Darkest radiance that log-uniform levels tell apart
-    #[arg(long, value_name = "RADIANCE", default_value = "0.001", allow_negative_numbers = true, help_heading = "Bake")]
+    #[arg(
+        long,
+        value_name = "RADIANCE",
+        default_value = "0.001",
+        allow_negative_numbers = true,
+        help_heading = "Bake"
+    )]
     pub floor: f64,
     /// Mean relative error of the second moment that auto levels may have
     #[arg(long, value_name = "E", default_value = "0.1", value_parser = values::positive, help_heading = "Bake")]
@@ -210,7 +216,10 @@ impl Args {
             ("face-size", self.face_size.to_string()),
             ("min-face-size", self.min_face_size.to_string()),
             ("levels", if self.levels == 0 { "auto".into() } else { self.levels.to_string() }),
-            ("level-choice", if self.level_choice == LevelChoiceArg::Optimal { "optimal" } else { "log-uniform" }.into()),
+            (
+                "level-choice",
+                if self.level_choice == LevelChoiceArg::Optimal { "optimal" } else { "log-uniform" }.into(),
+            ),
             ("floor", self.floor.to_string()),
             ("max-moment-error", self.max_moment_error.to_string()),
             ("coloured", self.coloured.to_string()),

@@ -40,7 +40,11 @@ impl EnvironmentInfo {
         let error = if measured.mips.is_empty() {
             "error not measured".to_owned()
         } else {
-            format!("RMSE {} of the mean at most, worst texel {}", percent(worst(|m| m.rmse)), percent(worst(|m| m.worst)))
+            format!(
+                "RMSE {} of the mean at most, worst texel {}",
+                percent(worst(|m| m.rmse)),
+                percent(worst(|m| m.worst))
+            )
         };
         format!(
             "{}² × 6 × {} mips, {}, {} levels with a second moment {} too high, {error}",
@@ -81,10 +85,17 @@ impl EnvironmentInfo {
         let _ = writeln!(out, "  ⟨L²⟩         {} too high on average", percent(measured.second_moment));
         let _ = writeln!(out, "  mips             face     roughness         RMSE  worst texel");
         for (mip, alpha) in params.roughness.iter().enumerate() {
-            let error = measured.mips.get(mip).map_or((String::from("-"), String::from("-")), |m| {
-                (percent(m.rmse), percent(m.worst))
-            });
-            let _ = writeln!(out, "    {mip:<10} {:>6} {alpha:>13.5} {:>12} {:>12}", params.face_size >> mip, error.0, error.1);
+            let error = measured
+                .mips
+                .get(mip)
+                .map_or((String::from("-"), String::from("-")), |m| (percent(m.rmse), percent(m.worst)));
+            let _ = writeln!(
+                out,
+                "    {mip:<10} {:>6} {alpha:>13.5} {:>12} {:>12}",
+                params.face_size >> mip,
+                error.0,
+                error.1
+            );
         }
         out
     }

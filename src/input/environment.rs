@@ -64,7 +64,10 @@ fn decode_hdr(
     check_size(path, size, 16, options.max_memory)?;
     // Run lengths stand for at most 127 values in two bytes, so a short file cannot hold many pixels.
     if size.0 * size.1 / 128 > bytes.len() as u64 {
-        return Err(InputError::bad(path, "the file is cut off: it ends before the image does; copy or export it again"));
+        return Err(InputError::bad(
+            path,
+            "the file is cut off: it ends before the image does; copy or export it again",
+        ));
     }
     if let Some(exposure) = meta.exposure.filter(|exposure| *exposure != 1.0) {
         notes.push(format!("the header names an exposure of {exposure}; radiance is taken as it is stored"));

@@ -9,8 +9,8 @@ use super::kernel::{Lobe, roughness_of_mips};
 use super::levels::{Seen, fewest, log_uniform, optimal, shares};
 use super::options::{EnvironmentOptions, LevelCount};
 use super::prefilter::{OF_SHARP, SHARP, filter_mip};
-use super::quantise;
 use super::quality;
+use super::quantise;
 use super::tables::Environment;
 use super::tree::{BASE_CHANNELS, Tree};
 use crate::error::{BakeError, Result};
@@ -52,13 +52,8 @@ pub fn bake(
         max_error: options.max_error,
         measured: MeasuredError { second_moment, ..MeasuredError::default() },
     };
-    let mut environment = Environment {
-        params,
-        radiance: Vec::new(),
-        indicators: Vec::new(),
-        colours: Vec::new(),
-        albedo: Vec::new(),
-    };
+    let mut environment =
+        Environment { params, radiance: Vec::new(), indicators: Vec::new(), colours: Vec::new(), albedo: Vec::new() };
     let mips = filtered_mips(image, options, &environment.params, progress);
     round(&mips, &mut environment);
     environment.params.measured.energy = energy_error(image, &mips.texels[0], mips.channels);
@@ -229,11 +224,12 @@ fn check_error(environment: &Environment) -> Result<()> {
     let params = &environment.params;
     for (mip, measured) in params.measured.mips.iter().enumerate().skip(1) {
         let alpha = params.roughness[mip];
-        let most = params.max_error * if alpha < SHARP { OF_SHARP } else { 1.0 };
+        let of_filter = params.max_error * if alpha < SHARP { OF_SHARP } else { 1.0 };
+        let most = of_filter.hypot(quality::rounding_floor(environment, mip as u32));
         if measured.rmse > most {
             return Err(BakeError::LimitExceeded(format!(
-                "mip {mip} (α {alpha:.4}): expected a root mean square error of {most} of the mean at most, found {:.5}; \
-                 raise --max-error, or give --format f32",
+                "mip {mip} (α {alpha:.4}): expected a root mean square error of {most:.5} of the mean at most, found {:.5}; \
+                 raise --max-error",
                 measured.rmse
             )));
         }

@@ -201,7 +201,8 @@ fn divide(tree: &Tree, index: u32, parts: f32, points: &mut Points) {
         let lambda = longitude(f64::from(x) + (f64::from(i) + 0.5) / f64::from(count_x), tree.width);
         [libm::sin(lambda) as f32, -libm::cos(lambda) as f32]
     };
-    let meridians: [[f32; 2]; MAX_PARTS as usize] = std::array::from_fn(|i| if (i as u32) < count_x { meridian(i as u32) } else { [0.0; 2] });
+    let meridians: [[f32; 2]; MAX_PARTS as usize] =
+        std::array::from_fn(|i| if (i as u32) < count_x { meridian(i as u32) } else { [0.0; 2] });
     let step = (top[0] - bottom[0]) / f64::from(count_y);
     for j in 0..count_y {
         let sine = top[0] - (f64::from(j) + 0.5) * step;

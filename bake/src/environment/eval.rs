@@ -57,9 +57,12 @@ pub fn environment_areas(environment: &Environment, cos_o: f32, alpha: f32) -> [
     let (i, j) = (x.floor(), y.floor());
     let (fx, fy) = (x - i, y - j);
     let mut areas = [0.0; 4];
-    for (di, dj, weight) in
-        [(0.0, 0.0, (1.0 - fx) * (1.0 - fy)), (1.0, 0.0, fx * (1.0 - fy)), (0.0, 1.0, (1.0 - fx) * fy), (1.0, 1.0, fx * fy)]
-    {
+    for (di, dj, weight) in [
+        (0.0, 0.0, (1.0 - fx) * (1.0 - fy)),
+        (1.0, 0.0, fx * (1.0 - fy)),
+        (0.0, 1.0, (1.0 - fx) * fy),
+        (1.0, 1.0, fx * fy),
+    ] {
         let texel = environment.albedo_texel((i + di).min(last) as u32, (j + dj).min(last) as u32);
         (0..4).for_each(|c| areas[c] += weight * texel[c]);
     }
@@ -67,12 +70,7 @@ pub fn environment_areas(environment: &Environment, cos_o: f32, alpha: f32) -> [
 }
 
 /// Calls `add` with mip, face, column, row and weight of the eight texels of a trilinear look-up.
-fn trilinear(
-    environment: &Environment,
-    direction: Vec3,
-    alpha: f32,
-    mut add: impl FnMut(u32, (usize, u32, u32), f32),
-) {
+fn trilinear(environment: &Environment, direction: Vec3, alpha: f32, mut add: impl FnMut(u32, (usize, u32, u32), f32)) {
     let mips = environment.params.mips();
     let mip = mip_of_roughness(alpha, mips).min((mips - 1) as f32);
     let low = (mip.floor() as u32).min(mips - 1);

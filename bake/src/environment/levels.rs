@@ -229,10 +229,8 @@ impl Weights {
                 squares.push((mean.normalize(), whole, sum));
             }
         }
-        let views: Vec<(DVec3, f64)> = even_directions(DIRECTIONS, 0.0)
-            .into_iter()
-            .flat_map(|d| ROUGHNESSES.map(|alpha| (d, alpha)))
-            .collect();
+        let views: Vec<(DVec3, f64)> =
+            even_directions(DIRECTIONS, 0.0).into_iter().flat_map(|d| ROUGHNESSES.map(|alpha| (d, alpha))).collect();
         // A fixed number of parts, added in order, so that the sum does not depend on threads.
         let parts: Vec<Vec<f64>> = views
             .par_chunks(ROUGHNESSES.len() * 12)

@@ -75,7 +75,9 @@ impl EnvironmentOptions {
     pub fn validate(&self) -> Result<()> {
         let size = self.face_size;
         if !(size.is_power_of_two() && (MIN_FACE_SIZE..=MAX_FACE_SIZE).contains(&size)) {
-            return bad(format!("--face-size: expected a power of two, {MIN_FACE_SIZE} to {MAX_FACE_SIZE}, found {size}"));
+            return bad(format!(
+                "--face-size: expected a power of two, {MIN_FACE_SIZE} to {MAX_FACE_SIZE}, found {size}"
+            ));
         }
         let least = self.min_face_size;
         if !(least.is_power_of_two() && least <= size) {
@@ -131,7 +133,10 @@ impl EnvironmentOptions {
         let texels = 8 * u64::from(self.face_size).pow(2);
         // Pixels with all channels, pieces of the resampling, the tree, and texels in f64.
         let parts = pixels * u64::from(self.division(image)).pow(2);
-        (pixels + parts) * (12 + 4 * channels + 8) + 24 * texels + 2 * parts * (48 + 4 * channels) + texels * channels * 16
+        (pixels + parts) * (12 + 4 * channels + 8)
+            + 24 * texels
+            + 2 * parts * (48 + 4 * channels)
+            + texels * channels * 16
     }
 
     /// In how many parts a side pixels are divided for the filter, so that they are no wider than half a texel of the

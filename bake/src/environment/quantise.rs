@@ -23,7 +23,8 @@ pub fn radiance(texel: [f64; 4], scale: f64, storage: Storage, out: &mut Vec<u8>
 pub fn indicators(shares: &[f64], storage: Storage) -> Vec<u32> {
     let mut bits: Vec<u32> = shares.iter().map(|share| encoded(share.min(1.0), storage)).collect();
     while bits.iter().map(|bits| decoded(*bits, storage)).sum::<f64>() > 1.0 {
-        let Some(largest) = bits.iter_mut().max_by(|a, b| decoded(**a, storage).total_cmp(&decoded(**b, storage))) else {
+        let Some(largest) = bits.iter_mut().max_by(|a, b| decoded(**a, storage).total_cmp(&decoded(**b, storage)))
+        else {
             break;
         };
         *largest -= 1; // The bits of positive floats are in order, so this is the next smaller number.
