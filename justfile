@@ -27,6 +27,7 @@ report MAPS="../shared/data/tiny/brushed_16x16.png":
     cargo run --release --bin glint-bake -- report {{MAPS}} -o docs
     cargo run --release -p glint-bake-core --example dictionary_report -- --svg docs/dictionary-report.svg --readme README.md > docs/dictionary-report.md
     cargo run --release -p glint-bake-core --example counting_report -- --svg docs/counting-report.svg > docs/counting-report.md
+    cargo run --release --example environment_report -- --svg docs/environment-report.svg > docs/environment-report.md
 
 # The NDF maps' report with few footprints, into target/bench: minutes instead of tens of minutes.
 bench MAPS="../shared/data/tiny/brushed_16x16.png":

@@ -10,6 +10,8 @@ mod damage;
 mod dictionary;
 #[path = "cli/documentation.rs"]
 mod documentation;
+#[path = "cli/environment.rs"]
+mod environment;
 #[path = "cli/info.rs"]
 mod info;
 #[path = "cli/preview.rs"]

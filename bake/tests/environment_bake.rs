@@ -143,7 +143,7 @@ fn the_first_mip_keeps_areas_and_energy() {
     assert!(environment.params.measured.energy < 1e-4, "{}", environment.params.measured.energy);
     for c in quality::compare(&image, &environment, 0, 40) {
         let share = c.error().abs() / c.exact.luminance;
-        assert!(share < 0.01, "{:?} {share}", c.texel);
+        assert!(share < 0.05, "{:?} {share}", c.texel);
     }
 }
 

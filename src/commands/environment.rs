@@ -83,7 +83,7 @@ pub struct Args {
     )]
     pub floor: f64,
     /// Mean relative error of the second moment that auto levels may have
-    #[arg(long, value_name = "E", default_value = "0.1", value_parser = values::positive, help_heading = "Bake")]
+    #[arg(long, value_name = "E", default_value = "0.1", value_parser = values::positive, allow_negative_numbers = true, help_heading = "Bake")]
     pub max_moment_error: f64,
     /// Give each level a colour of its own, so that red and blue lamps make red and blue glints
     #[arg(long, help_heading = "Bake")]

@@ -81,9 +81,13 @@ fn reports_keep_to_the_schema() {
     bake(folder.path(), &[&args[..], &["--placement", "stochastic"]].concat()).ok();
     bake(folder.path(), &["ndf-maps", "flakes.png", "-o", "tiled.glintpack", "--compress"]).ok();
     bake(folder.path(), &["dictionary", "-o", "lobes.glintpack", "--marginals", "3"]).ok();
+    let pixels = (b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n".iter().copied()).chain([128; 8]);
+    fs::write(folder.path().join("sky.hdr"), pixels.collect::<Vec<u8>>()).unwrap();
+    bake(folder.path(), &["environment", "sky.hdr", "-o", "sky.glintpack", "--face-size", "4"]).ok();
     let mut files = vec![
         "out.glintpack".to_owned(),
         "lobes.glintpack".into(),
+        "sky.glintpack".into(),
         "tiled.glintpack".into(),
         "missing.glintpack".into(),
         "flakes.png".into(),

@@ -224,11 +224,12 @@ fn check_error(environment: &Environment) -> Result<()> {
     let params = &environment.params;
     for (mip, measured) in params.measured.mips.iter().enumerate().skip(1) {
         let alpha = params.roughness[mip];
-        let most = params.max_error * if alpha < SHARP { OF_SHARP } else { 1.0 };
+        let of_filter = params.max_error * if alpha < SHARP { OF_SHARP } else { 1.0 };
+        let most = of_filter.hypot(quality::rounding_floor(environment, mip as u32));
         if measured.rmse > most {
             return Err(BakeError::LimitExceeded(format!(
-                "mip {mip} (α {alpha:.4}): expected a root mean square error of {most} of the mean at most, found {:.5}; \
-                 raise --max-error, or give --format f32",
+                "mip {mip} (α {alpha:.4}): expected a root mean square error of {most:.5} of the mean at most, found {:.5}; \
+                 raise --max-error",
                 measured.rmse
             )));
         }

@@ -27,6 +27,8 @@ const OF_COLOUR: f32 = 40.0;
 const OF_LEVELS: f32 = 160.0;
 /// What curvature may do to squared luminance, in units of a texel's allowance.
 const OF_SQUARE: f32 = 4.0;
+/// What a block across the horizon may do, in the same units; only few blocks are.
+const OF_KINK: f32 = 20.0;
 /// Blocks of a first look are no larger, so that even a lobe as wide as the hemisphere sees where it ends.
 const LOOK_RADIUS: f32 = 0.3;
 
@@ -140,11 +142,10 @@ impl Bound {
         let (edge_slope, edge_curve) = if light > 0.0 { self.edge(1.0 - 0.5 * far2) } else { (0.0, 0.0) };
         // 3 (b/u)² is ¾ slope². The core's part peaks at s = 0, the rest at the steepest place.
         let curve = 0.75 * (slope * slope * s2 * e + first_slope * first_slope * core);
-        let mut relative = curve + (slope * edge_slope + 0.5 * edge_curve) * variance;
-        if near2 < 2.0 && far2 > 2.0 {
-            // The horizon's kink: the block is cut off somewhere.
-            relative += 0.4 * edge_slope * variance.sqrt();
-        }
+        let relative = curve + (slope * edge_slope + 0.5 * edge_curve) * variance;
+        // The horizon's kink cuts the block off somewhere. What it gives there is next to nothing, so no share of that
+        // is allowed, only one of the texel.
+        let kink = if near2 < 2.0 && far2 > 2.0 { 0.4 * edge_slope * variance.sqrt() } else { 0.0 };
         let peak = self.a / (self.a + 0.5 * self.b * near2);
         let peak = peak * peak;
         let gradient = peak * (first_slope + edge_slope) * far.min(1.5);
@@ -154,7 +155,9 @@ impl Bound {
             && (light == 0.0
                 || (gradient * block.colour_moment <= OF_COLOUR * light
                     && gradient * block.level_moment <= OF_LEVELS * light
-                    && gradient * block.square_moment <= OF_COLOUR * square));
+                    && gradient * block.square_moment <= OF_COLOUR * square
+                    && peak * kink * block.light <= OF_KINK * light
+                    && peak * kink * block.square <= OF_KINK * square));
         if fits || block.light == 0.0 {
             return 1.0;
         }
@@ -164,8 +167,10 @@ impl Bound {
             f32::INFINITY
         };
         let over = (relative / allowance.of_block).min(of_texel);
-        // The error falls with the square of the parts' size.
-        over.sqrt().max(1.01)
+        let cut =
+            if light > 0.0 { peak * kink * (block.light / light).max(block.square / square) / OF_KINK } else { 0.0 };
+        // Curvature's error falls with the square of the parts' size, the kink's with the size.
+        over.sqrt().max(cut).max(1.01)
     }
 
     /// Largest slope and curvature of the last factor where the cosine is `low` or more, as shares of it near 1.

@@ -21,6 +21,8 @@ const OF_BLOCK: f64 = 8.0;
 const OF_TEXEL: f64 = 5e-3;
 /// Shares of blocks in the first look, which only finds the size of a texel's value.
 const FIRST_LOOK: f32 = 0.2;
+/// Fields whose brightest texel is at most 1/ALIKE² times as bright as the mean are done once.
+const ALIKE: f64 = 0.7;
 /// Edge of a field of texels that share what is far from all of them, and of the groups within that share the rest.
 const FIELD: u32 = 16;
 /// See [`FIELD`]; its square is [`LANES`].
@@ -37,12 +39,16 @@ struct Filter<'a> {
     bound: Bound,
     size: u32,
     max_error: f64,
+    /// Mean luminance of the source.
+    mean: f64,
 }
 
 /// Texels of one mip, 6 · size² of `tree.channels` numbers each: face by face, row by row. Means under the lobe.
 pub fn filter_mip(tree: &Tree, lobe: &Lobe, size: u32, max_error: f64, progress: &dyn Progress) -> Vec<f64> {
-    let max_error = if lobe.a < SHARP * SHARP { OF_SHARP * max_error } else { max_error };
-    let filter = Filter { tree, lobe, bound: Bound::new(lobe), size, max_error };
+    // Half of what is allowed, since some texels of a sharp mip look at a sun directly.
+    let max_error = if lobe.a < SHARP * SHARP { 0.5 * OF_SHARP * max_error } else { max_error };
+    let mean = f64::from(tree.blocks[0].light) / (4.0 * std::f64::consts::PI);
+    let filter = Filter { tree, lobe, bound: Bound::new(lobe), size, max_error, mean };
     let edge = size.min(FIELD);
     let squares = squares_of(size, edge);
     let fields: Vec<Vec<f64>> = squares
@@ -87,8 +93,18 @@ fn squares_of(size: u32, edge: u32) -> Vec<Square> {
 }
 
 impl Filter<'_> {
-    /// Means of a field's texels, row by row.
+    /// Means of a field's texels, row by row. A texel brighter than the mip's mean has less error as a share, by the root
+    /// of their ratio: then bright and dark texels weigh alike in the mip's root mean square. How bright a field gets is
+    /// seen once it is done, so fields next to a sun are done twice.
     fn field(&self, field: Square) -> Vec<f64> {
+        let texels = self.field_within(field, 1.0);
+        let light = texels.chunks_exact(self.tree.channels).map(|t| luminance([t[0], t[1], t[2]]));
+        let share = (self.mean / light.fold(self.mean, f64::max)).sqrt();
+        if share < ALIKE { self.field_within(field, share) } else { texels }
+    }
+
+    /// Means of a field's texels to `share` of the error.
+    fn field_within(&self, field: Square, share: f64) -> Vec<f64> {
         let channels = self.tree.channels;
         let edge = field.edge.min(GROUP);
         let groups: Vec<(Square, Group)> = (0..(field.edge / edge).pow(2))
@@ -101,7 +117,7 @@ impl Filter<'_> {
             .collect();
         let whole = Group::new(&self.directions(field));
         let largest = groups.iter().map(|(_, group)| group.radius).fold(0.0, f32::max);
-        let allowance = self.allowance(&whole, &groups);
+        let allowance = self.allowance(&whole, &groups, share);
         let (mut far, mut near) = (Points::default(), Points::default());
         let (mut stack, mut put_off) = (vec![0], Vec::new());
         self.bound.gather(self.tree, &whole, &allowance, &mut stack, &mut far, Some((largest, &mut put_off)));
@@ -135,7 +151,7 @@ impl Filter<'_> {
     }
 
     /// What the darkest group of a field allows, by a first look in the directions of the groups.
-    fn allowance(&self, whole: &Group, groups: &[(Square, Group)]) -> Allowance {
+    fn allowance(&self, whole: &Group, groups: &[(Square, Group)], share: f64) -> Allowance {
         let centres: Vec<Vec3> = groups.iter().map(|(_, group)| group.centre).collect();
         let look = Group { radius: whole.radius, centre: whole.centre, ..Group::new(&centres) };
         let coarse = Allowance { of_block: FIRST_LOOK, of_texel: [0.0; 2] };
@@ -147,9 +163,10 @@ impl Filter<'_> {
         let least = |value: &dyn Fn(usize) -> f64| (0..LANES).map(value).fold(f64::INFINITY, f64::min);
         let light = least(&|lane| luminance([of(0, lane), of(1, lane), of(2, lane)]));
         let square = least(&|lane| of(3, lane));
-        let share = OF_TEXEL * self.max_error;
+        let max_error = share * self.max_error;
+        let share = OF_TEXEL * max_error;
         Allowance {
-            of_block: (OF_BLOCK * self.max_error) as f32,
+            of_block: (OF_BLOCK * max_error) as f32,
             of_texel: [(share * light) as f32, (share * square) as f32],
         }
     }

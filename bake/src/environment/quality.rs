@@ -1,7 +1,8 @@
 //! Compares stored texels with sums over the source.
 //!
-//! Error of a mip: root mean square of the luminance error over randomly chosen texels, over the mean luminance of the
-//! mip; and the largest error of a texel as a share of its exact value.
+//! Error of a mip: root mean square of the luminance error over all texels, over the mean luminance of the mip; and the
+//! largest error of a measured texel as a share of its exact value. Texels are chosen at random, half of them evenly and
+//! half by their luminance, and weighted by how likely each was, so that a sun of a few texels is not missed.
 
 use super::cube::texel_direction;
 use super::image::{EnvironmentImage, luminance};
@@ -9,15 +10,17 @@ use super::reference::{Filtered, filtered, texel_mean};
 use super::tables::Environment;
 use crate::progress::Progress;
 use crate::rng::ItemRng;
-use glint_formats::environment::MeasuredMip;
+use glint_formats::environment::{MeasuredMip, Storage};
 use rayon::prelude::*;
 
 /// Purpose of the random numbers that choose texels.
 const PURPOSE: u32 = 30;
 /// Images of fewer columns have their pixels divided, so that the reference has not to divide them everywhere.
 const FINE_WIDTH: u32 = 256;
+/// Largest relative error of rounding to a half float.
+const HALF_ULP: f64 = 1.0 / 2048.0;
 /// Points a side of a texel of the first mip.
-const SAMPLES: u32 = 256;
+const SAMPLES: u32 = 512;
 
 /// One texel and what it should hold.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +31,8 @@ pub struct Compared {
     pub stored: [f32; 4],
     /// As the reference has it.
     pub exact: Filtered,
+    /// Share of the mip that the texel stands for; over all compared texels 1 on average.
+    pub weight: f64,
 }
 
 impl Compared {
@@ -49,11 +54,12 @@ pub fn compare(image: &EnvironmentImage, environment: &Environment, mip: u32, co
     };
     let size = environment.size(mip);
     let all = 6 * size * size;
+    let below = luminance_below(environment, mip);
     let (kernel, alpha) = (environment.params.kernel, environment.params.roughness[mip as usize]);
     (0..count.min(all))
         .into_par_iter()
         .map(|k| {
-            let index = if all <= count { k } else { ItemRng::new(u64::from(mip), PURPOSE, k).below(all) };
+            let (index, weight) = if all <= count { (k, 1.0) } else { chosen(&below, mip, k) };
             let texel = ((index / (size * size)) as usize, index % size, index / size % size);
             let (face, i, j) = texel;
             let exact = if alpha == 0.0 {
@@ -61,9 +67,41 @@ pub fn compare(image: &EnvironmentImage, environment: &Environment, mip: u32, co
             } else {
                 filtered(image, kernel, texel_direction(face, i, j, size), alpha)
             };
-            Compared { texel, stored: environment.radiance_texel(mip, face, i, j), exact }
+            Compared { texel, stored: environment.radiance_texel(mip, face, i, j), exact, weight }
         })
         .collect()
+}
+
+/// Luminance of all stored texels of a mip up to each, over the whole; evenly rising where there is no light.
+fn luminance_below(environment: &Environment, mip: u32) -> Vec<f64> {
+    let size = environment.size(mip);
+    let mut sum = 0.0;
+    let mut below: Vec<f64> = (0..6 * size * size)
+        .map(|k| {
+            let texel = environment.radiance_texel(mip, (k / (size * size)) as usize, k % size, k / size % size);
+            sum += luminance([0, 1, 2].map(|c| f64::from(texel[c])));
+            sum
+        })
+        .collect();
+    for (k, value) in below.iter_mut().enumerate() {
+        *value = if sum > 0.0 { *value / sum } else { (k + 1) as f64 / f64::from(6 * size * size) };
+    }
+    below
+}
+
+/// A random texel and 1 over how much likelier it was than in an even choice: even numbers choose evenly, odd ones by
+/// luminance.
+fn chosen(below: &[f64], mip: u32, k: u32) -> (u32, f64) {
+    let mut rng = ItemRng::new(u64::from(mip), PURPOSE, k);
+    let all = below.len();
+    let index = if k % 2 == 0 {
+        rng.below(all as u32) as usize
+    } else {
+        let u = rng.unit();
+        below.partition_point(|value| *value <= u).min(all - 1)
+    };
+    let share = below[index] - if index > 0 { below[index - 1] } else { 0.0 };
+    (index as u32, 1.0 / (0.5 + 0.5 * share * all as f64))
 }
 
 /// Error of compared texels. `mean` is the mean luminance of the mip.
@@ -71,9 +109,25 @@ pub fn error_of(compared: &[Compared], mean: f64) -> MeasuredMip {
     if compared.is_empty() || mean <= 0.0 {
         return MeasuredMip::default();
     }
-    let squares: f64 = compared.iter().map(|c| c.error().powi(2)).sum();
+    let squares: f64 = compared.iter().map(|c| c.weight * c.error().powi(2)).sum();
     let shares = compared.iter().map(|c| c.error().abs() / c.exact.luminance.max(1e-12 * mean));
     MeasuredMip { rmse: (squares / compared.len() as f64).sqrt() / mean, worst: shares.fold(0.0, f64::max) }
+}
+
+/// Largest root mean square error that rounding to half floats alone makes, over the mean luminance of a mip. Next to a
+/// sun this is what is left of the error.
+pub fn rounding_floor(environment: &Environment, mip: u32) -> f64 {
+    let size = environment.size(mip);
+    let mean = luminance(environment.params.mean_radiance);
+    if environment.params.storage == Storage::F32 || mean <= 0.0 {
+        return 0.0;
+    }
+    let texels = 6 * size * size;
+    let squares: f64 = (0..texels)
+        .map(|k| environment.radiance_texel(mip, (k / (size * size)) as usize, k % size, k / size % size))
+        .map(|t| luminance([0, 1, 2].map(|c| f64::from(t[c]))).powi(2))
+        .sum();
+    HALF_ULP * (squares / f64::from(texels)).sqrt() / mean
 }
 
 /// Measures every mip by up to `count` texels and records it.
