@@ -13,13 +13,13 @@ pub const PARAMS: FourCc = FourCc(*b"ALPP");
 /// Averaged normals: texture of the format of [`NormalStorage`], the full mip chain of the map.
 ///
 /// x, y, z are the mean normal over the texel, +X right, +Y up, not renormalised: 1 less their length is how far the
-/// normals there disagree. w is the meso roughness α under the texel's footprint, 0 to 1. To be read with linear filtering
-/// within and between mips.
+/// normals there disagree. w is the code t / (1 + t), t = (α / 0.12)^1.4, of the meso roughness α under the texel's
+/// footprint. To be read with linear filtering within and between mips, and decoded after.
 pub const NORMALS: FourCc = FourCc(*b"ALNM");
 /// Anisotropic meso roughness: texture of the same format and size; only where the parameters say so.
 ///
-/// x, y, z are xx, xy, yy of a symmetric matrix of eigenvalues α, positive semidefinite, in the frame that the shortest
-/// turn from +Z to the mean normal takes +X and +Y to; w is 0.
+/// x, y, z are xx, xy, yy of a symmetric matrix whose eigenvalues are codes of α as in [`NORMALS`], in the frame that the
+/// shortest turn from +Z to the mean normal takes +X and +Y to; w is 0.
 pub const ROUGHNESS: FourCc = FourCc(*b"ALRO");
 /// M⁻¹ of the LTC fits: texture of [`TABLE_VK_FORMAT`], [`TABLE_SIZE`]², one mip. See `docs/FORMAT.md`.
 pub const INVERSE: FourCc = FourCc(*b"ALLI");

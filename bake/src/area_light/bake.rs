@@ -2,7 +2,9 @@
 
 use super::material::{AreaLightMaterial, push_texel};
 use super::mips::{MipLevel, MipTexel, mip_chain};
+use super::fetch::alpha_of_code;
 use super::options::AreaLightOptions;
+use super::spread::code_of;
 use super::tables::{LtcTables, TABLE_MEAN_ERROR};
 use crate::error::Result;
 use crate::normal_map::NormalMap;
@@ -33,10 +35,12 @@ pub fn pack(map: &NormalMap, levels: &[MipLevel], options: &AreaLightOptions) ->
     for texel in levels.iter().flat_map(|level| &level.texels) {
         let at = normals.len();
         let n = texel.normal;
-        push_texel(options.storage, [n.x, n.y, n.z, texel.alpha], &mut normals);
+        push_texel(options.storage, [n.x, n.y, n.z, code_of(texel.alpha)], &mut normals);
         if options.anisotropic {
-            let [xx, xy, yy] = texel.by_direction;
-            push_texel(options.storage, [xx, xy, yy, 0.0], &mut roughness);
+            let [p, q] = texel.by_direction.map(code_of);
+            let (c, s) = (texel.axis.x, texel.axis.y);
+            let matrix = [p * c * c + q * s * s, (p - q) * c * s, p * s * s + q * c * c, 0.0];
+            push_texel(options.storage, matrix, &mut roughness);
         }
         add_error(texel, options.storage.decode(&normals[at..]), &mut measured);
     }
@@ -57,7 +61,8 @@ pub fn pack(map: &NormalMap, levels: &[MipLevel], options: &AreaLightOptions) ->
 }
 
 fn add_error(texel: &MipTexel, stored: [f32; 4], measured: &mut MeasuredError) {
-    let [x, y, z, alpha] = stored.map(f64::from);
+    let [x, y, z, _] = stored.map(f64::from);
+    let alpha = f64::from(alpha_of_code(stored[3]));
     let stored = DVec3::new(x, y, z);
     let angle = libm::atan2(stored.cross(texel.normal).length(), stored.dot(texel.normal));
     measured.normal_angle = measured.normal_angle.max(angle);

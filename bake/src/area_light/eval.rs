@@ -191,20 +191,6 @@ pub fn isotropic_radiance(tables: &Tables, normal: Vec3, alpha: f32, view: Vec3,
     lobe_radiance(tables, normal, lobe, view, f0, light) * light.radiance
 }
 
-/// Larger and smaller eigenvalue of xx, xy, yy, 0 to 1, and the direction of the larger.
-pub fn principal(by_direction: Vec3) -> Roughness {
-    let middle = 0.5 * (by_direction.x + by_direction.z);
-    let half = 0.5 * (by_direction.x - by_direction.z);
-    let gap = (half * half + by_direction.y * by_direction.y).sqrt();
-    let axis = if half >= 0.0 { Vec2::new(gap + half, by_direction.y) } else { Vec2::new(by_direction.y, gap - half) };
-    let length = axis.length();
-    Roughness {
-        major: (middle + gap).clamp(0.0, 1.0),
-        minor: (middle - gap).clamp(0.0, 1.0),
-        axis: if length > 1.0e-12 { axis / length } else { Vec2::X },
-    }
-}
-
 /// Radiance towards `view` (unit) of what lies under a pixel: base roughness `base_alpha` convolved with the meso roughness
 /// of all directions, or, with `lobes` above 0 (at most [`MAX_LOBES`]), with that of each direction.
 pub fn surface_radiance(
@@ -224,7 +210,7 @@ pub fn surface_radiance(
         return 0.0;
     }
     let lobes = lobes.min(MAX_LOBES);
-    let meso = principal(surface.by_direction);
+    let meso = surface.by_direction;
     let spread = (meso.major * meso.major - meso.minor * meso.minor).max(0.0).sqrt();
     let minor = convolve_alpha(base_alpha, meso.minor);
     let major = convolve_alpha(minor, spread / lobes as f32);

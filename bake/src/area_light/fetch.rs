@@ -1,7 +1,9 @@
 //! Reading the packed mip chain at run time, as a sampler with linear filtering within and between mips does. f32, plain
 //! functions, as in WGSL.
 
+use super::eval::Roughness;
 use super::material::AreaLightMaterial;
+use super::spread;
 use glam::{Vec2, Vec3, Vec4};
 use glint_formats::area_light::NormalStorage;
 use glint_formats::container::full_mip_count;
@@ -33,9 +35,8 @@ pub struct Surface {
     pub length: f32,
     /// Meso roughness α, the same in all directions.
     pub alpha: f32,
-    /// Meso roughness by direction: xx, xy, yy in the frame of [`super::eval::tangent_frame`]. `alpha` in all directions
-    /// where the material is isotropic.
-    pub by_direction: Vec3,
+    /// Meso roughness by direction; `alpha` in all directions where the material is isotropic.
+    pub by_direction: Roughness,
 }
 
 impl<'a> Maps<'a> {
@@ -110,6 +111,30 @@ fn into_map(maps: &Maps<'_>, position: Vec2) -> Vec2 {
     if inside.is_finite() { inside } else { Vec2::ZERO }
 }
 
+/// Roughness α of a code of the textures, see [`spread::code_of`].
+pub fn alpha_of_code(code: f32) -> f32 {
+    let code = code.clamp(0.0, 0.99);
+    if code > 0.0 {
+        (spread::KAPPA as f32 * (code / (1.0 - code)).powf(1.0 / spread::CODE_POWER as f32)).min(1.0)
+    } else {
+        0.0
+    }
+}
+
+/// Larger and smaller eigenvalue of xx, xy, yy, 0 to 1, and the direction of the larger.
+pub fn principal(matrix: Vec3) -> Roughness {
+    let middle = 0.5 * (matrix.x + matrix.z);
+    let half = 0.5 * (matrix.x - matrix.z);
+    let gap = (half * half + matrix.y * matrix.y).sqrt();
+    let axis = if half >= 0.0 { Vec2::new(gap + half, matrix.y) } else { Vec2::new(matrix.y, gap - half) };
+    let length = axis.length();
+    Roughness {
+        major: (middle + gap).clamp(0.0, 1.0),
+        minor: (middle - gap).clamp(0.0, 1.0),
+        axis: if length > 1.0e-12 { axis / length } else { Vec2::X },
+    }
+}
+
 /// What lies under a footprint of `footprint_texels` (twice its standard deviation, which is the edge of the texels whose
 /// bilinear look-up averages over as much) around `position`, in texels of the map.
 pub fn fetch(maps: &Maps<'_>, position: Vec2, footprint_texels: f32) -> Surface {
@@ -119,11 +144,12 @@ pub fn fetch(maps: &Maps<'_>, position: Vec2, footprint_texels: f32) -> Surface 
     let mean = trilinear(maps, maps.normals, level, position);
     // Under less than a texel the map is all but plane, and normals differ in proportion to the footprint.
     let fade = footprint.min(1.0);
-    let alpha = mean.w * fade;
+    let alpha = alpha_of_code(mean.w) * fade;
     let by_direction = if maps.is_anisotropic() {
-        trilinear(maps, maps.roughness, level, position).truncate() * fade
+        let code = principal(trilinear(maps, maps.roughness, level, position).truncate());
+        Roughness { major: alpha_of_code(code.major) * fade, minor: alpha_of_code(code.minor) * fade, axis: code.axis }
     } else {
-        Vec3::new(alpha, 0.0, alpha)
+        Roughness { major: alpha, minor: alpha, axis: Vec2::X }
     };
     let length = mean.truncate().length();
     // Normals of opposite sides can cancel; what is left has no direction then.

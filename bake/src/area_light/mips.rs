@@ -9,7 +9,7 @@
 //! - Maps of any size: texel i of a level of w′ covers texels i w/w′ to (i + 1) w/w′ of the map.
 
 use super::kernel::{box_cdf, spline_cdf, spline_points, weights};
-use super::spread::{KAPPA, alpha_of, axis_concentration, concentration};
+use super::spread::{AlphaOf, KAPPA, axis_concentration, concentration};
 use crate::error::{BakeError, Result};
 use crate::normal_map::NormalMap;
 use crate::progress::Progress;
@@ -29,8 +29,10 @@ pub struct MipTexel {
     pub deficit: f64,
     /// Meso roughness α over the footprint, the same in all directions.
     pub alpha: f64,
-    /// Meso roughness by direction: xx, xy, yy of a symmetric matrix of eigenvalues α, in the frame of [`tangent_frame`].
-    pub by_direction: [f64; 3],
+    /// Meso roughness α along `axis` and across it.
+    pub by_direction: [f64; 2],
+    /// Direction in which normals vary most, a unit vector in the frame of [`tangent_frame`].
+    pub axis: DVec2,
 }
 
 /// One level.
@@ -64,10 +66,11 @@ pub fn mip_chain(map: &NormalMap, max_memory: u64, progress: &dyn Progress) -> R
     let count = full_mip_count(map.width, map.height);
     progress.begin("mips", u64::from(count) + 1);
     let moments = texel_moments(map);
+    let inverses = [AlphaOf::new(concentration), AlphaOf::new(axis_concentration)];
     progress.advance(1);
     let mut levels = Vec::new();
     for level in 0..count {
-        levels.push(mip_level(map, &moments, level));
+        levels.push(mip_level(map, &moments, &inverses, level));
         progress.advance(1);
     }
     progress.end();
@@ -130,7 +133,7 @@ fn bilinear(map: &NormalMap, u: DVec2) -> DVec2 {
     read(at).lerp(read(at + 1), f.x).lerp(read(below).lerp(read(below + 1), f.x), f.y)
 }
 
-fn mip_level(map: &NormalMap, moments: &[Moments], level: u32) -> MipLevel {
+fn mip_level(map: &NormalMap, moments: &[Moments], inverses: &[AlphaOf; 2], level: u32) -> MipLevel {
     let (width, height) = ((map.width >> level).max(1), (map.height >> level).max(1));
     let along = |fine, coarse, cdf| weights(fine, coarse, map.wrap, cdf);
     let kernels: [fn(f64) -> f64; 2] = [box_cdf, spline_cdf];
@@ -147,8 +150,8 @@ fn mip_level(map: &NormalMap, moments: &[Moments], level: u32) -> MipLevel {
             let normal = if level == 0 { texel_normal(map, i, j) } else { mean_normal(&sum(0)) };
             let wide = sum(1);
             let centre = DVec2::new(i as f64 + 0.5, j as f64 + 0.5) * ratio;
-            let (alpha, by_direction) = roughness(map, &wide, centre, ratio, &points);
-            MipTexel { normal, deficit: deficit(&wide), alpha, by_direction }
+            let ([alpha, along, across], axis) = roughness(map, inverses, &wide, (centre, ratio), &points);
+            MipTexel { normal, deficit: deficit(&wide), alpha, by_direction: [along, across], axis }
         })
         .collect();
     MipLevel { width, height, texels }
@@ -196,11 +199,17 @@ fn deficit(m: &[f64; 6]) -> f64 {
 const LEAST_VARIANCE: f64 = 1e-10;
 
 /// Roughness of the normals at `points` (in texels of the level, `ratio` texels of the map each) around `centre`: the same
-/// in all directions, and by direction.
-fn roughness(map: &NormalMap, m: &[f64; 6], centre: DVec2, ratio: DVec2, points: &[DVec2]) -> (f64, [f64; 3]) {
+/// in all directions, along the direction in which they vary most, and across it.
+fn roughness(
+    map: &NormalMap,
+    [of_all, of_axis]: &[AlphaOf; 2],
+    m: &[f64; 6],
+    (centre, ratio): (DVec2, DVec2),
+    points: &[DVec2],
+) -> ([f64; 3], DVec2) {
     let variance = [m[3] - m[0] * m[0], m[4] - m[0] * m[1], m[5] - m[1] * m[1]];
     if variance[0] + variance[2] < LEAST_VARIANCE {
-        return (0.0, [0.0; 3]);
+        return ([0.0; 3], DVec2::X);
     }
     let n = mean_normal(m).normalize_or(DVec3::Z);
     let (t, b) = tangent_frame(n);
@@ -220,9 +229,7 @@ fn roughness(map: &NormalMap, m: &[f64; 6], centre: DVec2, ratio: DVec2, points:
         sums[2] += z2 * k2 / (z2 * k2 + y2);
     }
     let [all, along, across] = sums.map(|sum| sum / points.len() as f64);
-    let (p, q) = (alpha_of(along, axis_concentration), alpha_of(across, axis_concentration));
-    let (c, s) = (axis.x, axis.y);
-    (alpha_of(all, concentration), [p * c * c + q * s * s, (p - q) * c * s, p * s * s + q * c * c])
+    ([of_all.get(all), of_axis.get(along), of_axis.get(across)], axis)
 }
 
 /// Direction, in the frame (t, b) across the mean `n`, in which normals vary most, from the variance of (x, y).

@@ -26,6 +26,7 @@ pub mod options;
 pub mod quality;
 pub mod rect;
 pub mod reference;
+pub mod reference_lobes;
 pub mod resultant;
 pub mod sections;
 pub mod spread;
