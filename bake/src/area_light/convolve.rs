@@ -11,12 +11,13 @@ pub const FIRST: f64 = 0.3355;
 /// See [`FIRST`].
 pub const SECOND: f64 = 0.0255;
 
-/// Roughness of the convolution of lobes of roughness a and b, both 0 to 1; at most 1. Symmetric; a for b = 0.
+/// Roughness of the convolution of lobes of roughness a and b, both 0 to 1; at least the larger, at most 1. Symmetric; a
+/// for b = 0.
 pub fn convolve_alpha(a: f64, b: f64) -> f64 {
     let (small, large) = if a < b { (a, b) } else { (b, a) };
     if !(small > 0.0) {
         return large.clamp(0.0, 1.0);
     }
     let sum = large * libm::pow(1.0 + libm::pow(small / large, EXPONENT), 1.0 / EXPONENT);
-    (sum * (1.0 - a * b * (FIRST - SECOND * (a + b)))).clamp(0.0, 1.0)
+    (sum * (1.0 - a * b * (FIRST - SECOND * (a + b)))).clamp(large.min(1.0), 1.0)
 }

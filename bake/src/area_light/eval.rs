@@ -102,7 +102,7 @@ pub fn alpha_from_deficit(deficit: f32) -> f32 {
     alpha
 }
 
-/// Roughness of the convolution of lobes of roughness a and b, both 0 to 1; at most 1.
+/// Roughness of the convolution of lobes of roughness a and b, both 0 to 1; at least the larger, at most 1.
 pub fn convolve_alpha(a: f32, b: f32) -> f32 {
     const EXPONENT: f32 = super::convolve::EXPONENT as f32;
     let (small, large) = (a.min(b), a.max(b));
@@ -111,7 +111,7 @@ pub fn convolve_alpha(a: f32, b: f32) -> f32 {
     }
     let sum = large * (1.0 + (small / large).powf(EXPONENT)).powf(1.0 / EXPONENT);
     let bend = super::convolve::FIRST as f32 - super::convolve::SECOND as f32 * (a + b);
-    (sum * (1.0 - a * b * bend)).clamp(0.0, 1.0)
+    (sum * (1.0 - a * b * bend)).clamp(large.min(1.0), 1.0)
 }
 
 /// A table at texel coordinates, as linear filtering with clamp to edge reads it.

@@ -14,6 +14,7 @@
 //! - convolution is symmetric, and exact when one roughness is 0 ([`convolve`]).
 
 mod bake;
+pub mod baseline;
 pub mod convolve;
 pub mod eval;
 pub mod fetch;

@@ -125,37 +125,33 @@ fn refine(scene: &Scene, normal: DVec3, cell: Cell, estimate: f64, tolerance: f6
     (0..4).map(|k| refine(scene, normal, children[k], parts[k], 0.5 * tolerance, depth + 1)).sum()
 }
 
-/// Weighted mean over a footprint of what `radiance` says of projected normals: midpoints of a grid over ±4 standard
-/// deviations along the axes of the footprint, `per_texel` points a texel but at most `most` along an axis.
-pub fn footprint_mean(
-    map: &NormalMap,
-    footprint: &Footprint,
-    per_texel: f64,
-    most: u32,
-    mut radiance: impl FnMut(DVec2) -> f64,
-) -> f64 {
+/// Projected normals under a footprint and their shares, which add up to 1: midpoints of a grid over ±4 standard deviations
+/// along the axes of the footprint, `per_texel` points a texel but at least 24 and at most `most` along an axis.
+pub fn footprint_normals(map: &NormalMap, footprint: &Footprint, per_texel: f64, most: u32) -> Vec<(f64, DVec2)> {
     const REACH: f64 = 4.0;
     let (minor, major, axis) = footprint.principal();
     let nodes = |sigma: f64| -> Vec<(f64, f64)> {
         let count = (2.0 * REACH * sigma * per_texel).ceil().clamp(24.0, f64::from(most)) as u32;
         let step = 2.0 * REACH / f64::from(count);
-        (0..count)
-            .map(|k| {
-                let t = -REACH + (f64::from(k) + 0.5) * step;
-                (t * sigma, (-0.5 * t * t).exp())
-            })
-            .collect()
+        let at = |k: u32| -REACH + (f64::from(k) + 0.5) * step;
+        let total: f64 = (0..count).map(|k| (-0.5 * at(k) * at(k)).exp()).sum();
+        (0..count).map(|k| (at(k) * sigma, (-0.5 * at(k) * at(k)).exp() / total)).collect()
     };
-    let (mut sum, mut total) = (0.0, 0.0);
     let across = nodes(minor);
-    for (a, wa) in nodes(major) {
-        for &(b, wb) in &across {
+    let mut normals = Vec::new();
+    for (a, share_a) in nodes(major) {
+        for &(b, share_b) in &across {
             let (s, _) = map.bilinear(footprint.mean + axis * a + axis.perp() * b);
-            sum += wa * wb * radiance(s);
-            total += wa * wb;
+            normals.push((share_a * share_b, s));
         }
     }
-    sum / total
+    normals
+}
+
+/// Radiance of the map under a footprint: facets one by one.
+pub fn footprint_radiance(map: &NormalMap, footprint: &Footprint, scene: &Scene, tolerance: f64) -> f64 {
+    let normals = footprint_normals(map, footprint, 4.0, 256);
+    normals.iter().map(|&(share, s)| share * facet_radiance(scene, lift(s), tolerance)).sum()
 }
 
 /// Unit normal of a projected normal.

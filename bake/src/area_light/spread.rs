@@ -60,10 +60,10 @@ pub struct AlphaOf {
     concentrations: Vec<f64>,
 }
 
-/// Distance of the table's entries in ln α; between them α is off by 2e-6 at most.
-const STEP: f64 = 1.0 / 128.0;
+/// Distance of the table's entries in ln α; between them α is off by 1e-6 of itself at most.
+const STEP: f64 = 1.0 / 512.0;
 /// Least roughness of the table, e^−12 or 6e-6, is far below what any format stores.
-const ENTRIES: usize = 12 * 128 + 1;
+const ENTRIES: usize = 12 * 512 + 1;
 
 impl AlphaOf {
     /// The inverse of `of_alpha`, which falls with α.
