@@ -35,7 +35,7 @@ const MAPS: [(&str, &str); 5] = [
 /// Base roughness of the scenes.
 const ALPHAS: [f64; 2] = [0.05, 0.15];
 /// Places under each size of footprint.
-const PLACES: u32 = 24;
+const PLACES: u32 = 32;
 /// Points along an edge of the grids that the reference is tabulated on.
 const GRID: usize = 201;
 
@@ -99,8 +99,12 @@ fn report(data: &Path, svg: Option<&str>) {
 /// Closed forms and fits against integrals, with the paper's beside them.
 fn lobes() {
     println!("## Lobes of normals\n");
-    println!("Roughness from the length of the mean normal, and the convolution of two lobes, against f64 integrals.\n");
-    println!("| α | 1 − R | closed form, relative | inverse, relative | f32 inverse, relative | paper's Eq. 5, relative |");
+    println!(
+        "Roughness from the length of the mean normal, and the convolution of two lobes, against f64 integrals.\n"
+    );
+    println!(
+        "| α | 1 − R | closed form, relative | inverse, relative | f32 inverse, relative | paper's Eq. 5, relative |"
+    );
     println!("| --: | --: | --: | --: | --: | --: |");
     for alpha in [0.001, 0.01, 0.028, 0.1, 0.3, 0.6, 0.99] {
         let exact = deficit(alpha, 4000);
@@ -215,7 +219,10 @@ fn distances(name: &str, map: &NormalMap, tables: &Tables, scenes: &[(Scene, Rad
         small.normals.len() as f64 / 1024.0,
         query_times(&maps, tables, scenes)
     );
-    println!("| texels | reference | {} | iso / plain | iso / paper | iso / aniso | iso snorm8 | aniso snorm8 |", METHODS.join(" | "));
+    println!(
+        "| texels | reference | {} | iso / plain | iso / paper | iso / aniso | iso snorm8 | aniso snorm8 |",
+        METHODS.join(" | ")
+    );
     println!("| --: {}", "| --: ".repeat(METHODS.len() + 6) + "|");
     let over = Comparison { scenes, places: PLACES, lobes: LOBES, seed: 1 };
     let mut rows = Vec::new();
@@ -264,7 +271,8 @@ fn query_times(maps: &Maps<'_>, tables: &Tables, scenes: &[(Scene, RadianceGrid)
 
 fn summary(all: &[(&str, Vec<HighlightError>)]) {
     println!("\n## Summary\n");
-    let far: Vec<&HighlightError> = all.iter().flat_map(|(_, rows)| rows).filter(|r| r.footprint_texels >= 4.0).collect();
+    let far: Vec<&HighlightError> =
+        all.iter().flat_map(|(_, rows)| rows).filter(|r| r.footprint_texels >= 4.0).collect();
     let ratio = |over: usize, of: usize, rows: &[&HighlightError]| -> (f64, f64) {
         let ratios: Vec<f64> = rows.iter().map(|r| r.rmse[of] / r.rmse[over]).collect();
         (ratios.iter().sum::<f64>() / ratios.len() as f64, ratios.iter().copied().fold(0.0, f64::max))
@@ -303,7 +311,8 @@ fn plot(all: &[(&str, Vec<HighlightError>)]) -> String {
         for value in [0.01, 0.03, 0.1, 0.3, 1.0, 3.0] {
             let at = y(value);
             let _ = writeln!(svg, "<path d=\"M{x0} {at:.1}h{:.0}\" stroke=\"#ddd\"/>", width - left - 12.0);
-            let _ = writeln!(svg, "<text x=\"{:.0}\" y=\"{:.1}\" text-anchor=\"end\">{value}</text>", x0 - 4.0, at + 3.0);
+            let _ =
+                writeln!(svg, "<text x=\"{:.0}\" y=\"{:.1}\" text-anchor=\"end\">{value}</text>", x0 - 4.0, at + 3.0);
         }
         for row in rows.iter().step_by(2) {
             let _ = writeln!(
@@ -328,6 +337,7 @@ fn plot(all: &[(&str, Vec<HighlightError>)]) -> String {
         let _ = writeln!(svg, "<path d=\"M{at} {height}h24\" stroke=\"{}\" stroke-width=\"3\"/>", colours[k]);
         let _ = writeln!(svg, "<text x=\"{:.0}\" y=\"{:.0}\">{name}</text>", at + 30.0, height + 4.0);
     }
-    let _ = writeln!(svg, "<text x=\"860\" y=\"{:.0}\">relative RMSE over footprint in texels</text></svg>", height + 4.0);
+    let _ =
+        writeln!(svg, "<text x=\"860\" y=\"{:.0}\">relative RMSE over footprint in texels</text></svg>", height + 4.0);
     svg
 }

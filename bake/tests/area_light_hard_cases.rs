@@ -129,7 +129,10 @@ fn every_extreme_gives_a_finite_bounded_answer() {
                             for (lobes, two_sided) in [(0, true), (3, false), (9, true)] {
                                 let light = RectLight { corners, radiance: 1.0, two_sided };
                                 let found = surface_radiance(&tables, &surface, alpha, view, 0.9, &light, lobes);
-                                assert!((0.0..=1.02).contains(&found), "{found}: map {k} {position} {footprint} {light:?}");
+                                assert!(
+                                    (0.0..=1.02).contains(&found),
+                                    "{found}: map {k} {position} {footprint} {light:?}"
+                                );
                                 bright += usize::from(found > 0.1);
                             }
                         }

@@ -102,9 +102,10 @@ fn concentrations_are_integrals_over_the_lobe() {
         assert!((concentration(alpha) - all).abs() < 1e-4, "α {alpha}: {} {all}", concentration(alpha));
         assert!((axis_concentration(alpha) - axis).abs() < 3e-4, "α {alpha}: {} {axis}", axis_concentration(alpha));
     }
-    for (inverse, of_alpha) in
-        [(AlphaOf::new(concentration), concentration as fn(f64) -> f64), (AlphaOf::new(axis_concentration), axis_concentration)]
-    {
+    for (inverse, of_alpha) in [
+        (AlphaOf::new(concentration), concentration as fn(f64) -> f64),
+        (AlphaOf::new(axis_concentration), axis_concentration),
+    ] {
         for alpha in alphas(100) {
             assert!((inverse.get(of_alpha(alpha)) / alpha - 1.0).abs() < 1e-5, "α {alpha}");
         }

@@ -1,12 +1,12 @@
 //! The LTC tables: reproducible, no worse than the published ones, and the clipped sphere against a sum over directions.
 
+use glam::{DVec2, DVec3};
 use glint_bake_core::area_light::ggx;
 use glint_bake_core::area_light::material::decode_tables;
 use glint_bake_core::area_light::quality::table_error;
 use glint_bake_core::area_light::tables::{
     LtcTables, SIZE, TABLE_MEAN_ERROR, alpha_of, clipped_sphere, cosine_of, fit_tables,
 };
-use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
 /// Mean relative error of the published 64 × 64 tables (Heitz et al. 2016), as `table_error` measures it on their values.

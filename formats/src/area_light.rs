@@ -51,6 +51,7 @@ impl NormalStorage {
     }
 
     /// Bytes of a texel.
+    #[inline]
     pub fn texel_bytes(self) -> usize {
         match self {
             NormalStorage::F16 => 8,
@@ -59,6 +60,7 @@ impl NormalStorage {
     }
 
     /// A texel from its bytes, as a GPU decodes it.
+    #[inline]
     pub fn decode(self, bytes: &[u8]) -> [f32; 4] {
         std::array::from_fn(|k| match self {
             NormalStorage::F16 => half::f16::from_le_bytes([bytes[2 * k], bytes[2 * k + 1]]).to_f32(),

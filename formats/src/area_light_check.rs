@@ -44,8 +44,14 @@ fn check_material(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec
         let message = "the parameters say that the material is isotropic, yet there is this section";
         issues.push(roughness.error(IssueCode::AreaLightShape, message));
     }
-    let table =
-        Resource::Texture { vk_format: TABLE_VK_FORMAT, width: TABLE_SIZE, height: TABLE_SIZE, layers: 1, faces: 1, mips: 1 };
+    let table = Resource::Texture {
+        vk_format: TABLE_VK_FORMAT,
+        width: TABLE_SIZE,
+        height: TABLE_SIZE,
+        layers: 1,
+        faces: 1,
+        mips: 1,
+    };
     for (found, fault) in [(inverse, inverse_fault as Fault), (terms, terms_fault)] {
         if let Some(found) = found
             && found.expect(IssueCode::LtcShape, table, issues)
@@ -115,7 +121,9 @@ fn check_texels(section: Loaded<'_>, params: &AreaLightParams, code: IssueCode, 
             let texel = params.storage.decode(bytes);
             if let Some(expected) = fault(texel) {
                 let (x, y) = (at % width as usize, at / width as usize);
-                issues.push(section.error(code, format!("mip {mip}, texel ({x}, {y}): expected {expected}, found {texel:?}")));
+                issues.push(
+                    section.error(code, format!("mip {mip}, texel ({x}, {y}): expected {expected}, found {texel:?}")),
+                );
                 return;
             }
         }
@@ -142,7 +150,9 @@ fn check_table(section: Loaded<'_>, fault: Fault, issues: &mut Vec<Issue>) {
         let texel: [f32; 4] = std::array::from_fn(|k| f16::from_le_bytes([bytes[2 * k], bytes[2 * k + 1]]).to_f32());
         if let Some(expected) = fault(texel) {
             let (x, y) = (at % TABLE_SIZE as usize, at / TABLE_SIZE as usize);
-            issues.push(section.error(IssueCode::LtcValue, format!("texel ({x}, {y}): expected {expected}, found {texel:?}")));
+            issues.push(
+                section.error(IssueCode::LtcValue, format!("texel ({x}, {y}): expected {expected}, found {texel:?}")),
+            );
             return;
         }
     }

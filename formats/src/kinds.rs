@@ -3,7 +3,9 @@
 use crate::container::{FourCc, SectionEntry};
 use crate::issue::{Issue, IssueCode};
 use crate::sections::Sections;
-use crate::{area_light, area_light_check, dictionary, dictionary_check, ndf_maps, ndf_maps_check, placement_check, provenance};
+use crate::{
+    area_light, area_light_check, dictionary, dictionary_check, ndf_maps, ndf_maps_check, placement_check, provenance,
+};
 
 /// A section kind this version reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,8 +43,13 @@ pub const KNOWN: &[KnownKind] = &[
 pub(crate) type Check = fn(&Sections<'_>, &mut Vec<Issue>);
 
 /// Every check of contents.
-pub(crate) const CHECKS: &[Check] =
-    &[provenance::check, ndf_maps_check::check, placement_check::check, dictionary_check::check, area_light_check::check];
+pub(crate) const CHECKS: &[Check] = &[
+    provenance::check,
+    ndf_maps_check::check,
+    placement_check::check,
+    dictionary_check::check,
+    area_light_check::check,
+];
 
 /// What this version knows of a kind.
 pub fn known(kind: FourCc) -> Option<&'static KnownKind> {

@@ -200,7 +200,8 @@ pub fn ltc_table() -> Vec<u16> {
 
 /// The five sections of an area-light material.
 pub fn area_light_sections(params: &AreaLightParams, texels: &[Vec<u8>; 2], table: &[u16]) -> Vec<Section> {
-    let texture = |vk_format, width, height, mips| Resource::Texture { vk_format, width, height, layers: 1, faces: 1, mips };
+    let texture =
+        |vk_format, width, height, mips| Resource::Texture { vk_format, width, height, layers: 1, faces: 1, mips };
     let map = texture(vk_format::R8G8B8A8_SNORM, 2, 1, 2);
     let ltc = texture(vk_format::R16G16B16A16_SFLOAT, 64, 64, 1);
     let [normals, roughness] = texels;

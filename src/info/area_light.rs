@@ -112,9 +112,16 @@ impl AreaLightInfo {
         let kind = if self.anisotropic { "anisotropic" } else { "isotropic" };
         // Writing to a string cannot fail.
         let _ = writeln!(out, "area light material \"{}\"", self.name);
-        let _ = writeln!(out, "  map          {} × {} texels, {}, {} mips", self.width, self.height, self.wrap, self.mips);
+        let _ =
+            writeln!(out, "  map          {} × {} texels, {}, {} mips", self.width, self.height, self.wrap, self.mips);
         let _ = writeln!(out, "  roughness    base α {}, meso {kind}", self.base_roughness);
-        let _ = writeln!(out, "  storage      {}, {} and tables {}", self.storage, kib(self.map_bytes), kib(self.table_bytes));
+        let _ = writeln!(
+            out,
+            "  storage      {}, {} and tables {}",
+            self.storage,
+            kib(self.map_bytes),
+            kib(self.table_bytes)
+        );
         let top = &self.top;
         let _ = writeln!(
             out,

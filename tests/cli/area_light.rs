@@ -28,12 +28,17 @@ fn a_map_becomes_a_pack_that_verifies_and_is_described() {
     let measured = |name: &str| material["measured"][name].as_f64().unwrap();
     assert!(measured("normal_angle") < 1e-3 && measured("roughness") < 5e-3, "{material}");
     let top = |name: &str| material["top"][name].as_f64().unwrap();
-    assert!(top("length") < 1.0 && top("alpha_minor") < top("alpha") && top("alpha") < top("alpha_major"), "{material}");
+    assert!(
+        top("length") < 1.0 && top("alpha_minor") < top("alpha") && top("alpha") < top("alpha_major"),
+        "{material}"
+    );
     assert_eq!(report["provenance"][0]["method"], "area-light");
     assert_eq!(report["provenance"][0]["options"][0], serde_json::json!(["base-roughness", "0.05"]));
 
     let text = info(folder.path(), &["out.glintpack"]).ok().stdout;
-    for part in ["ALNM \"scratches\"", "R16G16B16A16_SFLOAT 16 × 8, 5 mips", "base α 0.05, meso anisotropic", "LTC tables"] {
+    for part in
+        ["ALNM \"scratches\"", "R16G16B16A16_SFLOAT 16 × 8, 5 mips", "base α 0.05, meso anisotropic", "LTC tables"]
+    {
         assert!(text.contains(part), "{part} is missing from:\n{text}");
     }
 }
@@ -54,7 +59,8 @@ fn the_same_flags_give_the_same_bytes_on_any_number_of_threads() {
 #[test]
 fn every_flag_is_taken() {
     let folder = maps();
-    let flags = ["--name", "Kratzer", "--crop", "5x3+2+1", "--normal-y", "down", "--channels", "xy", "--format", "snorm8"];
+    let flags =
+        ["--name", "Kratzer", "--crop", "5x3+2+1", "--normal-y", "down", "--channels", "xy", "--format", "snorm8"];
     bake(folder.path(), &[&DEFAULT[..], &flags, &["--compress", "--assume-linear", "--anisotropic"]].concat()).ok();
     let report = json(&info(folder.path(), &["out.glintpack", "--json"]).ok().stdout);
     let material = &report["area_lights"][0];

@@ -1,8 +1,8 @@
 //! From a normal map to a material: the mip chain, packed, and how far packing took it from what was computed.
 
+use super::fetch::alpha_of_code;
 use super::material::{AreaLightMaterial, push_texel};
 use super::mips::{MipLevel, MipTexel, mip_chain};
-use super::fetch::alpha_of_code;
 use super::options::AreaLightOptions;
 use super::spread::code_of;
 use super::tables::{LtcTables, TABLE_MEAN_ERROR};

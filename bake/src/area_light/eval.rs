@@ -93,8 +93,11 @@ pub fn alpha_from_deficit(deficit: f32) -> f32 {
         let shape = deficit_shape(alpha);
         let b2 = (1.0 - alpha) * (1.0 + alpha);
         // α² times the derivative of the shape by β²; near β = 0 its series.
-        let slope =
-            if b2 < 0.02 { alpha * alpha * (0.2 + b2 * (0.285_714_3 + b2 / 3.0)) } else { (0.5 - 1.5 * alpha * alpha * shape) / b2 };
+        let slope = if b2 < 0.02 {
+            alpha * alpha * (0.2 + b2 * (0.285_714_3 + b2 / 3.0))
+        } else {
+            (0.5 - 1.5 * alpha * alpha * shape) / b2
+        };
         let rate = 2.0 - 2.0 * slope / shape;
         let error = deficit / (alpha * alpha * shape);
         alpha = (alpha * (error.ln() / rate).exp()).min(1.0);
@@ -160,11 +163,8 @@ pub fn lobe_radiance(tables: &Tables, normal: Vec3, lobe: Roughness, view: Vec3,
     let length = across.length();
     let along = if length > 1.0e-6 { across / length } else { Vec2::X };
     let (x, y) = (t * along.x + b * along.y, b * along.x - t * along.y);
-    let lobe = Roughness {
-        major: lobe.major.clamp(MIN_ALPHA, 1.0),
-        minor: lobe.minor.clamp(MIN_ALPHA, 1.0),
-        axis: lobe.axis,
-    };
+    let lobe =
+        Roughness { major: lobe.major.clamp(MIN_ALPHA, 1.0), minor: lobe.minor.clamp(MIN_ALPHA, 1.0), axis: lobe.axis };
     let place = table_place(normal.dot(view).max(MIN_VIEW_COSINE), (lobe.major * lobe.minor).sqrt());
     let m = table_lookup(&tables.inverse, place.x, place.y);
     let terms = table_lookup(&tables.terms, place.x, place.y);

@@ -27,6 +27,12 @@ impl Inverse {
         (a * d - b * c).abs() * v.z.max(0.0) * FRAC_1_PI / (n2 * n2)
     }
 
+    /// The same density by a matrix of positive determinant: the cosine does not tell x from −x, but polygons do.
+    fn unmirrored(self) -> Inverse {
+        let [a, b, c, d] = self.entries;
+        if a * d - b * c < 0.0 { Inverse { entries: [-a, -b, c, d] } } else { self }
+    }
+
     /// M⁻¹ as a matrix.
     pub fn matrix(&self) -> DMat3 {
         let [a, b, c, d] = self.entries;
@@ -158,6 +164,7 @@ pub fn fit(target: &Target, shape: DMat3, symmetric: bool) -> (Inverse, DMat3) {
     for distance in [Distance::Hellinger, Distance::L1] {
         best = descend(target, best, distance, symmetric);
     }
+    let best = best.unmirrored();
     (best, best.matrix() * basis(axis))
 }
 
@@ -211,8 +218,7 @@ fn equations(target: &Target, inverse: &Inverse, distance: Distance, symmetric: 
         let of_z = 1.0 / v.z - 4.0 * v.z / n2;
         let of_x = -4.0 * v.x / n2;
         // Derivatives of ln g.
-        let mut row =
-            [d / det + of_x * w.x, -c / det + of_x * w.z, -b / det + of_z * w.x, a / det + of_z * w.z];
+        let mut row = [d / det + of_x * w.x, -c / det + of_x * w.z, -b / det + of_z * w.x, a / det + of_z * w.z];
         if symmetric {
             row = [0.0, 0.0, 0.0, row[3]];
         }

@@ -118,7 +118,14 @@ pub const METHODS: [&str; 6] = ["plain", "paper", "length", "isotropic", "one lo
 
 /// Radiance by each of [`METHODS`]: mipmapped normals with the base roughness alone; the paper's Eq. 5 and 7; the exact
 /// inverse of the length and our convolution; ours; ours with one stretched lobe, and with `lobes`.
-pub fn by_method(tables: &Tables, maps: &Maps<'_>, position: DVec2, footprint_texels: f64, scene: &Scene, lobes: u32) -> [f64; 6] {
+pub fn by_method(
+    tables: &Tables,
+    maps: &Maps<'_>,
+    position: DVec2,
+    footprint_texels: f64,
+    scene: &Scene,
+    lobes: u32,
+) -> [f64; 6] {
     let surface = fetch(maps, position.as_vec2(), footprint_texels as f32);
     let (alpha, view, f0, light) = (scene.alpha as f32, scene.view.as_vec3(), scene.f0 as f32, rect_light(scene));
     let flat = |alpha: f32| isotropic_radiance(tables, surface.normal, alpha, view, f0, &light);

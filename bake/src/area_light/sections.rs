@@ -12,13 +12,12 @@ use glint_formats::{Codec, FourCc, Pack, Resource, Section};
 pub fn to_sections(name: &str, material: &AreaLightMaterial, codec: Codec) -> Vec<Section> {
     let params = &material.params;
     let (width, height) = (params.width, params.height);
-    let texture = |vk_format, width, height, mips| Resource::Texture { vk_format, width, height, layers: 1, faces: 1, mips };
+    let texture =
+        |vk_format, width, height, mips| Resource::Texture { vk_format, width, height, layers: 1, faces: 1, mips };
     let map = texture(params.storage.vk_format(), width, height, full_mip_count(width, height));
     let table = texture(TABLE_VK_FORMAT, SIZE as u32, SIZE as u32, 1);
-    let mut sections = vec![
-        Section::parameters(PARAMS, name, params),
-        Section::texture(NORMALS, name, map, material.normals.clone()),
-    ];
+    let mut sections =
+        vec![Section::parameters(PARAMS, name, params), Section::texture(NORMALS, name, map, material.normals.clone())];
     if params.anisotropic {
         sections.push(Section::texture(ROUGHNESS, name, map, material.roughness.clone()));
     }
