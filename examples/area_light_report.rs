@@ -145,7 +145,7 @@ fn table_quality() {
     println!("\n## LTC tables\n");
     println!(
         "Fitted in {seconds:.1} s on {} threads; {} the built-in ones. ∫ |LTC − GGX| / ∫ GGX over 64 × 63 entries (all but \
-         roughness 0), half floats, a quadrature sixteen times as fine as the fit's: mean **{:.4}**, 95th percentile {:.4}, \
+         roughness 0), half floats, a quadrature twenty times as fine as the fit's: mean **{:.4}**, 95th percentile {:.4}, \
          worst {:.4}.",
         std::thread::available_parallelism().map_or(1, usize::from),
         if same { "the same bytes as" } else { "NOT the bytes of" },

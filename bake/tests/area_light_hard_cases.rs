@@ -156,7 +156,8 @@ fn a_light_behind_gives_nothing_and_one_that_fills_the_sky_everything() {
     };
     for lobes in [0, 3] {
         let found = shade(sky, false, lobes);
-        assert!(found > 1.9 && found <= 2.0, "{found}");
+        // What is missing is what GGX sends below the horizon and loses between facets.
+        assert!(found > 1.8 && found <= 2.0, "{found}");
         let [a, b, c, d] = sky;
         assert_eq!(shade([d, c, b, a], false, lobes), 0.0);
         assert_eq!(shade([d, c, b, a], true, lobes), found);

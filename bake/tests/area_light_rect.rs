@@ -51,7 +51,8 @@ fn what_is_known_in_closed_form() {
     let square = |half: f64, z: f64| corners(DVec3::new(-half, -half, z), DVec3::X * 2.0 * half, DVec3::Y * 2.0 * half);
     assert!((quad_form_factor(square(1e6, 1.0)) - 1.0).abs() < 1e-5);
     assert_eq!(quad_form_factor(square(1.0, -1.0)), 0.0);
-    assert_eq!(quad_form_factor(square(1.0, 0.0)), 0.0);
+    // Nearly touching, it covers all there is.
+    assert!((quad_form_factor(square(1.0, 1e-6)) - 1.0).abs() < 1e-5);
     // A wall from the horizon up, as wide and high as can be, fills half of the sky's projected area.
     let wall = corners(DVec3::new(1.0, -1e6, 0.0), DVec3::Y * 2e6, DVec3::Z * 1e6);
     assert!((quad_form_factor(wall) - 0.5).abs() < 1e-5);
@@ -98,5 +99,5 @@ fn moving_through_the_horizon_is_continuous() {
         assert!((found - before).abs() < 1e-3, "{k}: {found} after {before}");
         before = found;
     }
-    assert!(before > 0.1);
+    assert!(before > 0.05, "{before}");
 }

@@ -237,7 +237,7 @@ fn roughness(
     let [all, along, across] = sums.map(|sum| sum / points.len() as f64);
     let [all, along, across] = [of_all.get(all), of_axis.get(along), of_axis.get(across)];
     // One number for normals that vary along a line: between that of all and the mean of both directions.
-    let both = (along * across).sqrt().min(all);
+    let both = (along * across).sqrt().clamp(0.25 * all, all);
     let all = libm::pow(all, 1.0 - ANISOTROPIC_SHARE) * libm::pow(both, ANISOTROPIC_SHARE);
     ([all, along, across], axis)
 }
