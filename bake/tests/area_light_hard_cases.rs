@@ -160,7 +160,8 @@ fn a_light_behind_gives_nothing_and_one_that_fills_the_sky_everything() {
         assert!(found > 1.8 && found <= 2.0, "{found}");
         let [a, b, c, d] = sky;
         assert_eq!(shade([d, c, b, a], false, lobes), 0.0);
-        assert_eq!(shade([d, c, b, a], true, lobes), found);
-        assert_eq!(shade(sky.map(|p| -p), true, lobes), 0.0);
+        assert!((shade([d, c, b, a], true, lobes) - found).abs() < 1e-5);
+        // An LTC reaches a little below the surface, where GGX does not.
+        assert!(shade(sky.map(|p| -p), true, lobes) < 0.02);
     }
 }

@@ -179,14 +179,10 @@ pub fn highlight_error(
         let mut rng = ItemRng::new(over.seed, PURPOSE, place);
         let position = DVec2::new(rng.unit(), rng.unit()) * extent;
         let footprint = Footprint::new(position, 0.5 * footprint_texels, 1.0, 0.0);
-        let mut exact = vec![0.0; over.scenes.len()];
-        for (share, normal) in footprint_normals(map, &footprint, 4.0, 256) {
-            for (sum, (_, grid)) in exact.iter_mut().zip(over.scenes) {
-                *sum += share * grid.at(normal);
-            }
-        }
+        let normals = footprint_normals(map, &footprint, 4.0, 192);
         let (mut errors, mut power) = ([0.0; 6], 0.0);
-        for ((scene, _), exact) in over.scenes.iter().zip(exact) {
+        for (scene, grid) in over.scenes {
+            let exact: f64 = normals.iter().map(|&(share, normal)| share * grid.at(normal)).sum();
             let found = by_method(tables, maps, position, footprint_texels, scene, over.lobes);
             for k in 0..6 {
                 errors[k] += (found[k] - exact).powi(2);
