@@ -88,11 +88,11 @@ fn check_parameters(params: &AreaLightParams) -> Result<(), String> {
 
 fn normal_fault(texel: [f32; 4]) -> Option<&'static str> {
     let [x, y, z, alpha] = texel;
-    // Written so that NaN is at fault too.
-    if !(x * x + y * y + z * z <= LONGEST * LONGEST) {
+    // A range holds no NaN.
+    if !(0.0..=LONGEST * LONGEST).contains(&(x * x + y * y + z * z)) {
         return Some("a mean normal of length 1 at most");
     }
-    if !(z >= 0.0) {
+    if !(0.0..=LONGEST).contains(&z) {
         return Some("a mean normal above the surface");
     }
     if !(0.0..=1.0).contains(&alpha) {
@@ -135,7 +135,7 @@ fn inverse_fault(texel: [f32; 4]) -> Option<&'static str> {
     if !texel.iter().all(|v| v.is_finite()) {
         return Some("finite entries");
     }
-    if !(a * d - b * c >= 0.0) {
+    if !(0.0..=f32::INFINITY).contains(&(a * d - b * c)) {
         return Some("a matrix that does not mirror");
     }
     None

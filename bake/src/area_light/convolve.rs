@@ -15,7 +15,7 @@ pub const SECOND: f64 = 0.0255;
 /// for b = 0.
 pub fn convolve_alpha(a: f64, b: f64) -> f64 {
     let (small, large) = if a < b { (a, b) } else { (b, a) };
-    if !(small > 0.0) {
+    if small <= 0.0 || small.is_nan() {
         return large.clamp(0.0, 1.0);
     }
     let sum = large * libm::pow(1.0 + libm::pow(small / large, EXPONENT), 1.0 / EXPONENT);

@@ -84,7 +84,7 @@ pub fn alpha_from_deficit(deficit: f32) -> f32 {
     if deficit >= MAX_DEFICIT {
         return 1.0;
     }
-    if !(deficit > 0.0) {
+    if deficit <= 0.0 || deficit.is_nan() {
         return 0.0;
     }
     // Newton's method on ln(1 − R) over ln α, which is nearly straight.
@@ -109,7 +109,7 @@ pub fn alpha_from_deficit(deficit: f32) -> f32 {
 pub fn convolve_alpha(a: f32, b: f32) -> f32 {
     const EXPONENT: f32 = super::convolve::EXPONENT as f32;
     let (small, large) = (a.min(b), a.max(b));
-    if !(small > 0.0) {
+    if small <= 0.0 || small.is_nan() {
         return large.clamp(0.0, 1.0);
     }
     let sum = large * (1.0 + (small / large).powf(EXPONENT)).powf(1.0 / EXPONENT);

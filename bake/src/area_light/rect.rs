@@ -15,7 +15,7 @@ const MAX_VERTICES: usize = 5;
 pub fn edge_form_factor(a: Vec3, b: Vec3) -> f32 {
     let normal = a.cross(b);
     let sine = normal.length();
-    if !(sine > 0.0) {
+    if sine <= 0.0 || sine.is_nan() {
         return 0.0;
     }
     normal.z / sine * sine.atan2(a.dot(b)) * INV_TWO_PI
@@ -63,7 +63,7 @@ pub fn direction(v: Vec3) -> Vec3 {
     if !v.is_finite() {
         return Vec3::NAN;
     }
-    if !(most > 0.0) {
+    if most <= 0.0 {
         return Vec3::ZERO;
     }
     let scaled = v / most;

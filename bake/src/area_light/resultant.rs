@@ -44,7 +44,7 @@ pub fn alpha_from_deficit(deficit: f64) -> f64 {
     if deficit >= MAX_DEFICIT {
         return 1.0;
     }
-    if !(deficit > 0.0) {
+    if deficit <= 0.0 || deficit.is_nan() {
         return 0.0;
     }
     // ln(1 − R) is nearly straight in ln α, so Newton's method on logarithms ends after a few steps.
