@@ -1,5 +1,6 @@
 //! Area lights on real maps: the highlight, against the reference over distance. Few places and scenes; the report has more.
 
+#[allow(dead_code)] // It lists the crops of other methods too.
 mod real_maps;
 
 use glam::DVec2;
@@ -45,16 +46,19 @@ fn highlights_keep_their_width_over_distance() {
     let Some(data) = data() else { return };
     let mut ratios = Vec::new();
     for (name, file) in MAPS {
+        let (mut ours, mut papers) = (0.0, 0.0);
         for row in measured(&data, file, &[4.0, 16.0, 64.0, 256.0]) {
             let [plain, paper, _, isotropic, _, anisotropic] = row.rmse;
+            ours += isotropic;
+            papers += paper;
             assert!(isotropic < plain && anisotropic < plain, "{name}: {row:?}");
-            // Few places: the report holds ours to the paper's at each size, this only to its neighbourhood.
-            assert!(isotropic < 1.1 * paper, "{name}: {row:?}");
             ratios.push(isotropic / plain);
             if name == "brushed" && row.footprint_texels >= 16.0 {
                 assert!(anisotropic < 0.75 * isotropic, "{row:?}");
             }
         }
+        // Over all distances; at single ones, with so few places, either can be ahead. The report has each distance.
+        assert!(ours <= 1.02 * papers, "{name}: {ours} {papers}");
     }
     let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
     assert!(mean <= 0.5, "{mean}: {ratios:?}");
