@@ -87,6 +87,12 @@ issue_codes! {
     DictionaryShape = 3021, "dictionary table differs from parameters";
     DictionaryValue = 3022, "dictionary value out of range";
     DictionaryRow = 3023, "dictionary row not normalised";
+    AreaLightParameters = 3040, "area light parameter out of range";
+    AreaLightShape = 3041, "area light texture differs from parameters";
+    AreaLightNormal = 3042, "area light normal out of range";
+    AreaLightRoughness = 3043, "area light roughness out of range";
+    LtcShape = 3044, "LTC table of wrong format or size";
+    LtcValue = 3045, "LTC table value out of range";
 }
 
 impl fmt::Display for IssueCode {

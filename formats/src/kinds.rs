@@ -3,7 +3,9 @@
 use crate::container::{FourCc, SectionEntry};
 use crate::issue::{Issue, IssueCode};
 use crate::sections::Sections;
-use crate::{dictionary, dictionary_check, ndf_maps, ndf_maps_check, placement_check, provenance};
+use crate::{
+    area_light, area_light_check, dictionary, dictionary_check, ndf_maps, ndf_maps_check, placement_check, provenance,
+};
 
 /// A section kind this version reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,14 +32,24 @@ pub const KNOWN: &[KnownKind] = &[
     KnownKind { kind: ndf_maps::LAYERS, version: 1, title: "layered material" },
     KnownKind { kind: dictionary::PARAMS, version: 1, title: "dictionary parameters" },
     KnownKind { kind: dictionary::TABLE, version: 1, title: "dictionary table" },
+    KnownKind { kind: area_light::PARAMS, version: 1, title: "area light parameters" },
+    KnownKind { kind: area_light::NORMALS, version: 1, title: "area light normals" },
+    KnownKind { kind: area_light::ROUGHNESS, version: 1, title: "area light roughness" },
+    KnownKind { kind: area_light::INVERSE, version: 1, title: "LTC inverse matrices" },
+    KnownKind { kind: area_light::TERMS, version: 1, title: "LTC terms" },
 ];
 
 /// A check of the contents of some kinds.
 pub(crate) type Check = fn(&Sections<'_>, &mut Vec<Issue>);
 
 /// Every check of contents.
-pub(crate) const CHECKS: &[Check] =
-    &[provenance::check, ndf_maps_check::check, placement_check::check, dictionary_check::check];
+pub(crate) const CHECKS: &[Check] = &[
+    provenance::check,
+    ndf_maps_check::check,
+    placement_check::check,
+    dictionary_check::check,
+    area_light_check::check,
+];
 
 /// What this version knows of a kind.
 pub fn known(kind: FourCc) -> Option<&'static KnownKind> {

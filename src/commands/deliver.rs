@@ -78,6 +78,9 @@ fn summary(report: &Report, outcome: WriteOutcome) -> String {
     for dictionary in &report.dictionaries {
         lines.push(format!("{}: {}", dictionary.name, dictionary.accuracy_line()));
     }
+    for material in &report.area_lights {
+        lines.push(format!("{}: {}", material.name, material.accuracy_line()));
+    }
     let outcome = match outcome {
         WriteOutcome::Written => "written",
         WriteOutcome::Unchanged => "unchanged",

@@ -1,5 +1,6 @@
 //! One file (or folder) a subcommand: its flags and what it does.
 
+mod area_light;
 mod deliver;
 mod demo;
 mod dictionary;
@@ -28,6 +29,7 @@ pub struct Bake {
 enum Command {
     NdfMaps(Box<ndf_maps::Args>),
     Dictionary(dictionary::Args),
+    AreaLight(Box<area_light::Args>),
     Preview(preview::Args),
     Report(report::Args),
     Demo(demo::Args),
@@ -39,6 +41,7 @@ pub fn bake(cli: Bake) -> Result<(), Failure> {
     match cli.command {
         Command::NdfMaps(args) => ndf_maps::run(*args, terminal),
         Command::Dictionary(args) => dictionary::run(&args, terminal),
+        Command::AreaLight(args) => area_light::run(*args, terminal),
         Command::Preview(args) => preview::run(&args, terminal),
         Command::Report(args) => report::run(&args, terminal),
         Command::Demo(args) => demo::run(&args, terminal),

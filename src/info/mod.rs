@@ -1,10 +1,12 @@
 //! What a pack holds, as data: the one description that text, JSON, reports and summaries are made from.
 
+mod area_light;
 mod dictionary;
 mod material;
 pub mod plot;
 mod text;
 
+pub use area_light::AreaLightInfo;
 pub use dictionary::DictionaryInfo;
 pub use material::MaterialInfo;
 pub use text::{kib, percent};
@@ -44,6 +46,8 @@ pub struct Report {
     pub layers: Vec<LayeredMaterial>,
     /// Slope dictionaries.
     pub dictionaries: Vec<DictionaryInfo>,
+    /// Materials of the area-light method.
+    pub area_lights: Vec<AreaLightInfo>,
     /// Where the pack comes from.
     pub provenance: Vec<Provenance>,
     #[serde(skip)]
@@ -84,6 +88,7 @@ impl Report {
             materials: Vec::new(),
             layers: Vec::new(),
             dictionaries: Vec::new(),
+            area_lights: Vec::new(),
             provenance: Vec::new(),
             pack: None,
         }
@@ -102,6 +107,7 @@ impl Report {
                 .collect();
             report.layers = decode_all(&pack, LAYERS);
             report.dictionaries = DictionaryInfo::all_of(&pack);
+            report.area_lights = AreaLightInfo::all_of(&pack);
             report.provenance = decode_all(&pack, PROVENANCE);
         }
         report.pack = Some(pack);

@@ -81,8 +81,10 @@ fn reports_keep_to_the_schema() {
     bake(folder.path(), &[&args[..], &["--placement", "stochastic"]].concat()).ok();
     bake(folder.path(), &["ndf-maps", "flakes.png", "-o", "tiled.glintpack", "--compress"]).ok();
     bake(folder.path(), &["dictionary", "-o", "lobes.glintpack", "--marginals", "3"]).ok();
+    bake(folder.path(), &["area-light", "flakes.png", "-o", "light.glintpack", "--anisotropic"]).ok();
     let mut files = vec![
-        "out.glintpack".to_owned(),
+        "light.glintpack".to_owned(),
+        "out.glintpack".into(),
         "lobes.glintpack".into(),
         "tiled.glintpack".into(),
         "missing.glintpack".into(),
