@@ -1,5 +1,7 @@
 //! The programs as a user meets them: one program of tests, so that they share their helpers and one build.
 
+#[path = "cli/area_light.rs"]
+mod area_light;
 #[path = "cli/bad_input.rs"]
 mod bad_input;
 #[path = "cli/bake.rs"]

@@ -346,8 +346,9 @@ fn plot(levels: &[LevelQuality]) -> String {
         .unwrap();
     }
     for level in 0..levels.len() {
-        writeln!(svg, "<text x=\"{:.1}\" y=\"{}\">{level}</text>", x(level) - 4.0, height - 14.0).unwrap();
+        writeln!(svg, "<text x=\"{:.1}\" y=\"{}\">{level}</text>", x(level) - 4.0, height - 24.0).unwrap();
     }
+    writeln!(svg, "<text x=\"{:.1}\" y=\"{}\">level</text>", x(0) - 4.0, height - 6.0).unwrap();
     let curves = [
         ("L1 mean", 4.0, "#1b6", levels.iter().map(|q| q.l1_mean).collect::<Vec<f64>>()),
         ("KS mean", 4.0, "#06c", levels.iter().map(|q| q.ks_mean).collect()),

@@ -1,5 +1,6 @@
 //! The algorithms of glint-bake: slices in, sections out. No files, no printing, no command line, no GPU.
 
+pub mod area_light;
 pub mod counting;
 pub mod dictionary;
 pub mod environment;

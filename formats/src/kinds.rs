@@ -4,7 +4,8 @@ use crate::container::{FourCc, SectionEntry};
 use crate::issue::{Issue, IssueCode};
 use crate::sections::Sections;
 use crate::{
-    dictionary, dictionary_check, environment, environment_check, ndf_maps, ndf_maps_check, placement_check, provenance,
+    area_light, area_light_check, dictionary, dictionary_check, environment, environment_check, ndf_maps,
+    ndf_maps_check, placement_check, provenance,
 };
 
 /// A section kind this version reads.
@@ -37,6 +38,11 @@ pub const KNOWN: &[KnownKind] = &[
     KnownKind { kind: environment::INDICATORS, version: 1, title: "environment indicators" },
     KnownKind { kind: environment::COLOURS, version: 1, title: "environment colours" },
     KnownKind { kind: environment::ALBEDO, version: 1, title: "environment albedo" },
+    KnownKind { kind: area_light::PARAMS, version: 1, title: "area light parameters" },
+    KnownKind { kind: area_light::NORMALS, version: 1, title: "area light normals" },
+    KnownKind { kind: area_light::ROUGHNESS, version: 1, title: "area light roughness" },
+    KnownKind { kind: area_light::INVERSE, version: 1, title: "LTC inverse matrices" },
+    KnownKind { kind: area_light::TERMS, version: 1, title: "LTC terms" },
 ];
 
 /// A check of the contents of some kinds.
@@ -49,6 +55,7 @@ pub(crate) const CHECKS: &[Check] = &[
     placement_check::check,
     dictionary_check::check,
     environment_check::check,
+    area_light_check::check,
 ];
 
 /// What this version knows of a kind.

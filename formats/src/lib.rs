@@ -8,6 +8,8 @@
 #[cfg(target_endian = "big")]
 compile_error!("glint-formats reads little-endian records in place and is not written for big-endian machines");
 
+pub mod area_light;
+mod area_light_check;
 pub mod container;
 pub mod dictionary;
 mod dictionary_check;

@@ -32,6 +32,11 @@ pub fn run<P: Parser>(
 ) -> ExitCode {
     // Without a handler the shell sees a signal, not a code; a second handler cannot be there yet.
     let _ = ctrlc::set_handler(|| std::process::exit(i32::from(Exit::Interrupted as u8)));
+    let report_panic = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        report_panic(info);
+        std::process::exit(i32::from(Exit::Unexpected as u8));
+    }));
     let args = match response::expand(args) {
         Ok(args) => args,
         Err(failure) => return finish(Err(failure)),

@@ -81,6 +81,9 @@ fn summary(report: &Report, outcome: WriteOutcome) -> String {
     for environment in &report.environments {
         lines.push(format!("{}: {}", environment.name, environment.accuracy_line()));
     }
+    for material in &report.area_lights {
+        lines.push(format!("{}: {}", material.name, material.accuracy_line()));
+    }
     let outcome = match outcome {
         WriteOutcome::Written => "written",
         WriteOutcome::Unchanged => "unchanged",

@@ -1,5 +1,6 @@
 //! One file (or folder) a subcommand: its flags and what it does.
 
+mod area_light;
 mod deliver;
 mod demo;
 mod dictionary;
@@ -30,6 +31,7 @@ enum Command {
     NdfMaps(Box<ndf_maps::Args>),
     Dictionary(dictionary::Args),
     Environment(environment::Args),
+    AreaLight(Box<area_light::Args>),
     Preview(preview::Args),
     Report(report::Args),
     Demo(demo::Args),
@@ -42,6 +44,7 @@ pub fn bake(cli: Bake) -> Result<(), Failure> {
         Command::NdfMaps(args) => ndf_maps::run(*args, terminal),
         Command::Dictionary(args) => dictionary::run(&args, terminal),
         Command::Environment(args) => environment::run(&args, terminal),
+        Command::AreaLight(args) => area_light::run(*args, terminal),
         Command::Preview(args) => preview::run(&args, terminal),
         Command::Report(args) => report::run(&args, terminal),
         Command::Demo(args) => demo::run(&args, terminal),

@@ -1,11 +1,13 @@
 //! What a pack holds, as data: the one description that text, JSON, reports and summaries are made from.
 
+mod area_light;
 mod dictionary;
 mod environment;
 mod material;
 pub mod plot;
 mod text;
 
+pub use area_light::AreaLightInfo;
 pub use dictionary::DictionaryInfo;
 pub use environment::EnvironmentInfo;
 pub use material::MaterialInfo;
@@ -48,6 +50,8 @@ pub struct Report {
     pub dictionaries: Vec<DictionaryInfo>,
     /// Environments.
     pub environments: Vec<EnvironmentInfo>,
+    /// Materials of the area-light method.
+    pub area_lights: Vec<AreaLightInfo>,
     /// Where the pack comes from.
     pub provenance: Vec<Provenance>,
     #[serde(skip)]
@@ -89,6 +93,7 @@ impl Report {
             layers: Vec::new(),
             dictionaries: Vec::new(),
             environments: Vec::new(),
+            area_lights: Vec::new(),
             provenance: Vec::new(),
             pack: None,
         }
@@ -108,6 +113,7 @@ impl Report {
             report.layers = decode_all(&pack, LAYERS);
             report.dictionaries = DictionaryInfo::all_of(&pack);
             report.environments = EnvironmentInfo::all_of(&pack);
+            report.area_lights = AreaLightInfo::all_of(&pack);
             report.provenance = decode_all(&pack, PROVENANCE);
         }
         report.pack = Some(pack);

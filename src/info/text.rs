@@ -70,6 +70,10 @@ impl Report {
             line(&mut out, String::new());
             out.push_str(&environment.to_text());
         }
+        for material in &self.area_lights {
+            line(&mut out, String::new());
+            out.push_str(&material.to_text());
+        }
         for provenance in &self.provenance {
             line(&mut out, String::new());
             provenance_lines(provenance, &mut out);

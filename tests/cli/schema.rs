@@ -84,8 +84,10 @@ fn reports_keep_to_the_schema() {
     let pixels = (b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n".iter().copied()).chain([128; 8]);
     fs::write(folder.path().join("sky.hdr"), pixels.collect::<Vec<u8>>()).unwrap();
     bake(folder.path(), &["environment", "sky.hdr", "-o", "sky.glintpack", "--face-size", "4"]).ok();
+    bake(folder.path(), &["area-light", "flakes.png", "-o", "light.glintpack", "--anisotropic"]).ok();
     let mut files = vec![
-        "out.glintpack".to_owned(),
+        "light.glintpack".to_owned(),
+        "out.glintpack".into(),
         "lobes.glintpack".into(),
         "sky.glintpack".into(),
         "tiled.glintpack".into(),

@@ -1,10 +1,11 @@
 //! Flags of `glint-bake ndf-maps`.
 
 use crate::cli::{RunFlags, values};
-use crate::input::Crop;
+use crate::input::{Channels, Crop};
 use clap::ValueEnum;
 use glint_bake_core::ndf_maps::transform::TransformRanges;
-use glint_formats::ndf_maps::DensityStorage;
+use glint_bake_core::normal_map::GreenAxis;
+use glint_formats::ndf_maps::{DensityStorage, Wrap};
 use std::path::PathBuf;
 
 /// Bake multi-scale NDF maps of small normal maps
@@ -153,6 +154,33 @@ pub enum ChannelsArg {
 pub enum PlacementArg {
     Tiled,
     Stochastic,
+}
+
+impl From<NormalY> for GreenAxis {
+    fn from(axis: NormalY) -> GreenAxis {
+        match axis {
+            NormalY::Up => GreenAxis::Up,
+            NormalY::Down => GreenAxis::Down,
+        }
+    }
+}
+
+impl From<WrapArg> for Wrap {
+    fn from(wrap: WrapArg) -> Wrap {
+        match wrap {
+            WrapArg::Repeat => Wrap::Repeat,
+            WrapArg::Clamp => Wrap::Clamp,
+        }
+    }
+}
+
+impl From<ChannelsArg> for Channels {
+    fn from(channels: ChannelsArg) -> Channels {
+        match channels {
+            ChannelsArg::Xyz => Channels::Xyz,
+            ChannelsArg::Xy => Channels::Xy,
+        }
+    }
 }
 
 impl Args {

@@ -4,7 +4,8 @@ mod args;
 mod plan;
 mod summary;
 
-pub use args::Args;
+pub use args::{Args, ChannelsArg, NormalY, WrapArg};
+pub(super) use plan::{digest, unique_name};
 
 use crate::cli::Terminal;
 use crate::exit::Failure;

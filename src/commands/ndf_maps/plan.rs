@@ -1,17 +1,16 @@
 //! What a bake will do, checked before any of it is done: names, options, inputs, output paths.
 
-use super::args::{Args, ChannelsArg, NormalY, PlacementArg, WrapArg};
+use super::args::{Args, PlacementArg};
 use crate::commands::deliver::Delivery;
 use crate::exit::{Exit, Failure};
-use crate::input::{Channels, InputOptions, LoadedMap, load_normal_map};
+use crate::input::{InputOptions, LoadedMap, load_normal_map};
 use crate::pack;
 use glint_bake_core::ndf_maps::bake::{NdfMapsOptions, ROUGHNESS_RANGE, WORST_OF_MEAN};
 use glint_bake_core::ndf_maps::eval::Material;
 use glint_bake_core::ndf_maps::placement::{PlacementOptions, StochasticOptions};
-use glint_bake_core::normal_map::GreenAxis;
 use glint_formats::Codec;
 use glint_formats::container::MAX_NAME_BYTES;
-use glint_formats::ndf_maps::{LayeredMaterial, Wrap};
+use glint_formats::ndf_maps::LayeredMaterial;
 use glint_formats::provenance::{InputDigest, Provenance};
 use std::path::{Path, PathBuf};
 
@@ -169,18 +168,9 @@ fn placement_options(args: &Args) -> Result<PlacementOptions, Failure> {
 
 fn input_options(args: &Args) -> InputOptions {
     InputOptions {
-        y: match args.normal_y {
-            NormalY::Up => GreenAxis::Up,
-            NormalY::Down => GreenAxis::Down,
-        },
-        wrap: match args.wrap {
-            WrapArg::Repeat => Wrap::Repeat,
-            WrapArg::Clamp => Wrap::Clamp,
-        },
-        channels: match args.channels {
-            ChannelsArg::Xyz => Channels::Xyz,
-            ChannelsArg::Xy => Channels::Xy,
-        },
+        y: args.normal_y.into(),
+        wrap: args.wrap.into(),
+        channels: args.channels.into(),
         height: args.height,
         crop: args.crop,
         assume_linear: args.assume_linear,
@@ -209,17 +199,22 @@ fn names(args: &Args) -> Result<Vec<String>, Failure> {
         names.push(name.clone());
     }
     for path in &args.maps[names.len()..] {
-        let stem: String = path.file_stem().unwrap_or_default().to_string_lossy().chars().collect();
-        let stem: String = stem.chars().map(|c| if c.is_control() { '_' } else { c }).collect();
-        let mut number = 1;
-        let mut name = cut(&stem, "");
-        while names.contains(&name) {
-            number += 1;
-            name = cut(&stem, &format!("-{number}"));
-        }
-        names.push(name);
+        names.push(unique_name(path, &names));
     }
     Ok(names)
+}
+
+/// The stem of a file's name, with a number when that is taken.
+pub(crate) fn unique_name(path: &Path, taken: &[String]) -> String {
+    let stem: String = path.file_stem().unwrap_or_default().to_string_lossy().chars().collect();
+    let stem: String = stem.chars().map(|c| if c.is_control() { '_' } else { c }).collect();
+    let mut number = 1;
+    let mut name = cut(&stem, "");
+    while taken.contains(&name) {
+        number += 1;
+        name = cut(&stem, &format!("-{number}"));
+    }
+    name
 }
 
 /// The stem, shortened so that it fits a name together with `suffix`.
@@ -259,7 +254,7 @@ fn layers(text: &str, names: &[String], args: &Args) -> Result<LayeredMaterial, 
 }
 
 /// Digest of the bytes that were loaded.
-fn digest(path: &Path, loaded: &LoadedMap) -> Result<InputDigest, Failure> {
+pub(crate) fn digest(path: &Path, loaded: &LoadedMap) -> Result<InputDigest, Failure> {
     let bytes = std::fs::read(path).map_err(|e| Failure::io(path, "cannot be read", &e))?;
     if format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&bytes)) != loaded.digest {
         let message = format!("{}: changed while it was read; run again once it is at rest", path.display());

@@ -42,7 +42,8 @@ pub fn bytes_against_error(name: &str, settings: &[Setting]) -> String {
     }
     let mut roughnesses: Vec<f64> = settings.iter().map(|s| s.roughness).collect();
     roughnesses.dedup();
-    for (roughness, colour) in roughnesses.iter().zip(["#1f77b4", "#d62728", "#2ca02c", "#9467bd"].iter().cycle()) {
+    let colours = ["#1f77b4", "#d62728", "#2ca02c", "#9467bd"].iter().cycle();
+    for (k, (roughness, colour)) in roughnesses.iter().zip(colours).enumerate() {
         let mut front: Vec<&Setting> = settings.iter().filter(|s| s.roughness == *roughness && s.on_front).collect();
         front.sort_by_key(|s| s.bytes);
         let path: Vec<String> = front.iter().map(|s| format!("{:.1} {:.1}", x(kib(s)), y(percent(s)))).collect();
@@ -56,10 +57,8 @@ pub fn bytes_against_error(name: &str, settings: &[Setting]) -> String {
                 s.label
             );
         }
-        if let Some(last) = front.last() {
-            let (cx, cy) = (x(kib(last)) + 10.0, y(percent(last)) + 4.0);
-            let _ = writeln!(svg, "<text x=\"{cx:.1}\" y=\"{cy:.1}\" fill=\"{colour}\">σ_r {roughness}</text>");
-        }
+        let (left, line) = (SIZE.0 - 128.0, MARGIN.1 + 18.0 * (k as f64 + 1.0));
+        let _ = writeln!(svg, "<text x=\"{left}\" y=\"{line}\" fill=\"{colour}\">σ_r {roughness}</text>");
     }
     svg + "</svg>\n"
 }

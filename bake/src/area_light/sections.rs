@@ -1,0 +1,96 @@
+//! A material as sections of a pack, and back.
+
+use super::material::AreaLightMaterial;
+use super::tables::{LtcTables, SIZE};
+use crate::error::{BakeError, Result};
+use crate::pack_access::{bytes, names_with, parameters};
+use glint_formats::area_light::{AreaLightParams, INVERSE, NORMALS, PARAMS, ROUGHNESS, TABLE_VK_FORMAT, TERMS};
+use glint_formats::container::full_mip_count;
+use glint_formats::{Codec, FourCc, Pack, Resource, Section};
+
+/// The sections of a material under `name`, all compressed when `codec` says so.
+pub fn to_sections(name: &str, material: &AreaLightMaterial, codec: Codec) -> Vec<Section> {
+    let params = &material.params;
+    let (width, height) = (params.width, params.height);
+    let texture =
+        |vk_format, width, height, mips| Resource::Texture { vk_format, width, height, layers: 1, faces: 1, mips };
+    let map = texture(params.storage.vk_format(), width, height, full_mip_count(width, height));
+    let table = texture(TABLE_VK_FORMAT, SIZE as u32, SIZE as u32, 1);
+    let mut sections =
+        vec![Section::parameters(PARAMS, name, params), Section::texture(NORMALS, name, map, material.normals.clone())];
+    if params.anisotropic {
+        sections.push(Section::texture(ROUGHNESS, name, map, material.roughness.clone()));
+    }
+    for (kind, texels) in [(INVERSE, &material.tables.inverse), (TERMS, &material.tables.terms)] {
+        let payload = texels.as_flattened().iter().flat_map(|bits| bits.to_le_bytes()).collect();
+        sections.push(Section::texture(kind, name, table, payload));
+    }
+    for section in &mut sections {
+        section.codec = codec;
+    }
+    sections
+}
+
+/// Reads the material `name`. The pack must have passed verification; errors name what is missing or damaged.
+pub fn from_pack(pack: &Pack, name: &str) -> Result<AreaLightMaterial> {
+    let params: AreaLightParams = parameters(pack, PARAMS, name)?;
+    let texels: usize = (0..full_mip_count(params.width, params.height))
+        .map(|mip| (params.width >> mip).max(1) as usize * (params.height >> mip).max(1) as usize)
+        .sum();
+    let read = |kind: FourCc, len: usize| -> Result<Vec<u8>> {
+        let found = bytes(pack, kind, name)?;
+        if found.len() == len {
+            return Ok(found);
+        }
+        Err(BakeError::BadInput(format!("section {kind} of '{name}': expected {len} bytes, found {}", found.len())))
+    };
+    let map_bytes = texels * params.storage.texel_bytes();
+    let table = |kind: FourCc| -> Result<Vec<[u16; 4]>> {
+        let bytes = read(kind, SIZE * SIZE * 8)?;
+        let texel = |b: &[u8]| std::array::from_fn(|k| u16::from_le_bytes([b[2 * k], b[2 * k + 1]]));
+        Ok(bytes.chunks_exact(8).map(texel).collect())
+    };
+    Ok(AreaLightMaterial {
+        normals: read(NORMALS, map_bytes)?,
+        roughness: if params.anisotropic { read(ROUGHNESS, map_bytes)? } else { Vec::new() },
+        tables: LtcTables { inverse: table(INVERSE)?, terms: table(TERMS)? },
+        params,
+    })
+}
+
+/// Names of the area-light materials in a pack.
+pub fn materials(pack: &Pack) -> Vec<&str> {
+    names_with(pack, PARAMS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::area_light::{AreaLightOptions, bake};
+    use crate::normal_map::NormalMap;
+    use crate::progress::Silent;
+    use glint_formats::area_light::NormalStorage;
+    use glint_formats::ndf_maps::Wrap;
+    use glint_formats::{Limits, PackBuilder};
+
+    #[test]
+    fn what_was_baked_is_read_back() {
+        let projected = (0..15).map(|k| [0.05 * (k % 5) as f32, -0.1 * (k % 3) as f32]).collect();
+        let map = NormalMap { width: 5, height: 3, wrap: Wrap::Repeat, projected };
+        for (anisotropic, storage, codec) in
+            [(false, NormalStorage::F16, Codec::None), (true, NormalStorage::Snorm8, Codec::Zstd)]
+        {
+            let options = AreaLightOptions { anisotropic, storage, ..AreaLightOptions::default() };
+            let material = bake(&map, &options, 1 << 30, &Silent).unwrap();
+            let mut builder = PackBuilder::new();
+            for section in to_sections("metal", &material, codec) {
+                builder.push(section).unwrap();
+            }
+            let pack = Pack::from_bytes(builder.finish().unwrap(), &Limits::default()).unwrap();
+            assert_eq!(pack.verify(), []);
+            assert_eq!(materials(&pack), ["metal"]);
+            assert_eq!(from_pack(&pack, "metal").unwrap(), material);
+            assert!(matches!(from_pack(&pack, "none"), Err(BakeError::BadInput(_))));
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! `glint-bake area-light`: one normal map in, a verified pack out. First everything is checked, then work begins.
+
+use super::deliver::Delivery;
+use super::ndf_maps::{ChannelsArg, NormalY, WrapArg, digest, unique_name};
+use crate::cli::{RunFlags, Terminal, values};
+use crate::exit::Failure;
+use crate::info::kib;
+use crate::input::{Crop, InputOptions, LoadedMap, load_normal_map};
+use crate::pack;
+use crate::progress::Stages;
+use clap::ValueEnum;
+use glint_bake_core::area_light::{self, AreaLightOptions, mips, sections};
+use glint_formats::Codec;
+use glint_formats::area_light::NormalStorage;
+use glint_formats::container::full_mip_count;
+use glint_formats::provenance::{InputDigest, Provenance};
+use std::path::PathBuf;
+
+/// What makes a pack smaller.
+const SMALLER: &str = "give --format snorm8, or a part of the map with --crop";
+
+/// Bake a normal map for rectangle lights at any distance
+///
+/// A mip chain of averaged normals that keep their length, with the roughness of the normals under each texel, and the LTC
+/// tables of GGX. Highlights of area lights then stay as wide and bright as the map makes them, however far away.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Args {
+    /// Normal map: PNG, TGA, JPEG, TIFF, WebP or EXR
+    #[arg(value_name = "NORMAL_MAP")]
+    pub map: PathBuf,
+    /// Pack to write
+    #[arg(short, long, value_name = "PACK")]
+    pub output: PathBuf,
+    /// Name of the material [default: the file's name]
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<String>,
+
+    /// GGX roughness α of the surface itself, 0.001 to 1; a default for the renderer, no texture depends on it
+    #[arg(long, value_name = "ALPHA", default_value = "0.1", allow_negative_numbers = true, help_heading = "Bake")]
+    pub base_roughness: f64,
+    /// Store roughness by direction too, for brushed metal and the like; twice the bytes
+    #[arg(long, help_heading = "Bake")]
+    pub anisotropic: bool,
+    /// How normals and roughness are stored
+    #[arg(long, value_name = "FORMAT", default_value = "f16", help_heading = "Bake")]
+    pub format: Format,
+    /// Compress the pack's sections with Zstandard
+    #[arg(long, help_heading = "Bake")]
+    pub compress: bool,
+
+    /// Use only this part of the map
+    #[arg(long, value_name = "WxH+X+Y", value_parser = values::crop, help_heading = "Input")]
+    pub crop: Option<Crop>,
+    /// Which way green points: up (OpenGL) or down (DirectX)
+    #[arg(long, value_name = "AXIS", default_value = "up", help_heading = "Input")]
+    pub normal_y: NormalY,
+    /// What lies beyond the map's edge
+    #[arg(long, value_name = "WRAP", default_value = "repeat", help_heading = "Input")]
+    pub wrap: WrapArg,
+    /// Channels that hold the normal; xy computes z
+    #[arg(long, value_name = "CHANNELS", default_value = "xyz", help_heading = "Input")]
+    pub channels: ChannelsArg,
+    /// Read a height map; SCALE is the height of white in texels
+    #[arg(long, value_name = "SCALE", value_parser = values::non_zero, allow_negative_numbers = true, help_heading = "Input")]
+    pub height: Option<f32>,
+    /// Take the values of a file tagged as sRGB as they are
+    #[arg(long, help_heading = "Input")]
+    pub assume_linear: bool,
+
+    #[command(flatten)]
+    run: RunFlags,
+}
+
+/// How normals and roughness are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// half floats, 8 bytes a texel
+    F16,
+    /// signed bytes, 4 bytes a texel
+    Snorm8,
+}
+
+/// Runs the subcommand.
+pub fn run(args: Args, terminal: Terminal) -> Result<(), Failure> {
+    let threads = args.run.threads;
+    super::on_threads(threads, || bake(&args, terminal))?
+}
+
+fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
+    let options = args.options();
+    options.validate()?;
+    let name = args.name()?;
+    let inputs = [args.map.clone()];
+    let delivery = Delivery { output: &args.output, inputs: &inputs, run: &args.run };
+    delivery.check()?;
+    let loaded = load_normal_map(&args.map, &args.input_options())?;
+    let digest = digest(&args.map, &loaded)?;
+    for warning in &loaded.warnings {
+        terminal.warn(&format!("{}: {warning}", args.map.display()));
+    }
+    let (width, height) = (loaded.map.width, loaded.map.height);
+    let bytes = args.map_bytes(width, height);
+    mips::check_memory(&loaded.map, args.run.max_memory).map_err(|e| Failure::bake(&args.map, &e))?;
+    delivery.check_size(bytes, SMALLER)?;
+    let line = format!("{width} × {height} texels, {} mips, {}", full_mip_count(width, height), kib(bytes));
+    if args.run.dry_run {
+        let output = args.output.display();
+        terminal.say(&format!("would write {output}: \"{name}\", {line}; dry run, nothing was written"));
+        return Ok(());
+    }
+    terminal.detail(&format!("{}: {line}, {}", args.map.display(), loaded.convention));
+    let stages = Stages::new(terminal);
+    let material = area_light::bake(&loaded.map, &options, args.run.max_memory, &stages)
+        .map_err(|e| Failure::bake(&args.map, &e))?;
+    let codec = if args.compress { Codec::Zstd } else { Codec::None };
+    let sections = sections::to_sections(&name, &material, codec);
+    drop(material);
+    let bytes = pack::seal(&args.provenance(&loaded, digest), sections)?;
+    delivery.write(bytes, SMALLER, terminal)
+}
+
+impl Args {
+    fn options(&self) -> AreaLightOptions {
+        AreaLightOptions {
+            base_roughness: self.base_roughness,
+            anisotropic: self.anisotropic,
+            storage: match self.format {
+                Format::F16 => NormalStorage::F16,
+                Format::Snorm8 => NormalStorage::Snorm8,
+            },
+        }
+    }
+
+    fn name(&self) -> Result<String, Failure> {
+        use glint_formats::container::MAX_NAME_BYTES;
+        let Some(name) = &self.name else { return Ok(unique_name(&self.map, &[])) };
+        if name.is_empty() || name.len() > MAX_NAME_BYTES || name.chars().any(char::is_control) {
+            return Err(Failure::usage(format!(
+                "--name: expected 1 to {MAX_NAME_BYTES} bytes without control characters, found {name:?}"
+            )));
+        }
+        Ok(name.clone())
+    }
+
+    fn input_options(&self) -> InputOptions {
+        InputOptions {
+            y: self.normal_y.into(),
+            wrap: self.wrap.into(),
+            channels: self.channels.into(),
+            height: self.height,
+            crop: self.crop,
+            assume_linear: self.assume_linear,
+            max_memory: self.run.max_memory,
+        }
+    }
+
+    /// Bytes of the textures of a map.
+    fn map_bytes(&self, width: u32, height: u32) -> u64 {
+        let texels: u64 = (0..full_mip_count(width, height))
+            .map(|mip| u64::from((width >> mip).max(1)) * u64::from((height >> mip).max(1)))
+            .sum();
+        let textures = if self.anisotropic { 2 } else { 1 };
+        texels * textures * self.options().storage.texel_bytes() as u64
+    }
+
+    /// Where the pack comes from. Flags that do not change its bytes are left out.
+    fn provenance(&self, loaded: &LoadedMap, digest: InputDigest) -> Provenance {
+        let debug = |value: &dyn std::fmt::Debug| format!("{value:?}").to_ascii_lowercase();
+        let mut options = vec![
+            ("base-roughness", self.base_roughness.to_string()),
+            ("anisotropic", self.anisotropic.to_string()),
+            ("format", debug(&self.format)),
+            ("normal-y", debug(&self.normal_y)),
+            ("wrap", debug(&self.wrap)),
+            ("channels", debug(&self.channels)),
+        ];
+        if let Some(c) = self.crop {
+            options.push(("crop", format!("{}x{}+{}+{}", c.w, c.h, c.x, c.y)));
+        }
+        if let Some(scale) = self.height {
+            options.push(("height", scale.to_string()));
+        }
+        if self.assume_linear {
+            options.push(("assume-linear", "true".into()));
+        }
+        let notes = loaded.warnings.iter().map(|warning| format!("{}: {warning}", digest.name)).collect();
+        Provenance {
+            options: options.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
+            inputs: vec![digest],
+            normal_convention: format!("y-{}", debug(&self.normal_y)),
+            notes,
+            ..pack::provenance("area-light")
+        }
+    }
+}
