@@ -156,7 +156,7 @@ fn check_indicators(section: Loaded<'_>, params: &EnvironmentParams, issues: &mu
                 }
             }
             // Sixteen-bit UNORM adds up in units of 1/65535, which f64 rounds.
-            if !sound || !(sum <= 1.0 + 1e-12) {
+            if !sound || sum > 1.0 + 1e-12 {
                 let message = format!(
                     "texel {texel} of mip {mip}: expected shares that are not negative and add up to 1 at most, found \
                      a sum of {sum}"

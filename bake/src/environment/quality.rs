@@ -94,7 +94,7 @@ fn luminance_below(environment: &Environment, mip: u32) -> Vec<f64> {
 fn chosen(below: &[f64], mip: u32, k: u32) -> (u32, f64) {
     let mut rng = ItemRng::new(u64::from(mip), PURPOSE, k);
     let all = below.len();
-    let index = if k % 2 == 0 {
+    let index = if k.is_multiple_of(2) {
         rng.below(all as u32) as usize
     } else {
         let u = rng.unit();
