@@ -172,8 +172,11 @@ fn filter_rows(
     }
 }
 
+/// Texels of the six faces of a mip.
+type Faces = Vec<Vec<[f32; 4]>>;
+
 /// Faces of every mip that cmgen makes, and its CPU seconds; `None` where it is not installed.
-fn cmgen(path: &Path, samples: u32) -> Option<(f64, Vec<Vec<Vec<[f32; 4]>>>)> {
+fn cmgen(path: &Path, samples: u32) -> Option<(f64, Vec<Faces>)> {
     let folder = tempfile::tempdir().ok()?;
     let begin = cpu_seconds(true);
     let status = Command::new("cmgen")
