@@ -7,6 +7,7 @@ use glint_bake_core::ndf_maps::bake::{self, BakedNdfMaps, NdfMapsOptions};
 use glint_bake_core::ndf_maps::eval::Material;
 use glint_bake_core::ndf_maps::measure::{footprint_errors, tile_errors};
 use glint_bake_core::ndf_maps::placement::{self, PlacementOptions, StochasticOptions};
+use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
 use glint_bake_core::ndf_maps::surface::EvalSettings;
 use glint_bake_core::ndf_maps::transform::TransformRanges;
 use glint_bake_core::normal_map::NormalMap;
@@ -106,10 +107,11 @@ fn surface_error(map: &NormalMap, options: &PlacementOptions, sizes: &[(f64, f64
     let maps = baked(map, 0.02, 0.01);
     let material = Material { placement: placement::bake(map, 0.02, options).unwrap(), maps };
     let extent = glam::DVec2::new(map.width as f64, map.height as f64) * 32.0;
+    let reference = SurfaceReference::new(map, &material);
     let mut total = 0.0;
     for (sigma, anisotropy) in sizes {
         let footprints = footprints(*sigma, *anisotropy, extent, 2, 5);
-        let errors = footprint_errors(map, &material, &footprints, EvalSettings::default());
+        let errors = footprint_errors(&reference, &footprints, EvalSettings::default());
         println!(
             "σ {sigma} anisotropy {anisotropy}: E₁ {:.4}, energy {:.1e}, {:.0} terms",
             errors.e1.mean, errors.energy.worst, errors.terms

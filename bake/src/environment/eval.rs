@@ -152,8 +152,8 @@ pub fn relative_variance(moments: [f32; 2], n: f32) -> f32 {
     if mean2 > 0.0 { (moments[1] - mean2).max(0.0) / (n * mean2) } else { 0.0 }
 }
 
-/// Factor s for which 1 + s (X − 1) has the variance that the unsorted facets have, X = Σ L_k M_k / (N Σ L_k p_k):
-/// `square` is ⟨L²⟩ as filtered, `moments` those of the levels. At most 1: levels never vary too little.
+/// Factor s for which n/N + s (X − n/N) has the variance that the unsorted facets have, n of N expected facets being
+/// there, X = Σ L_k M_k / (N Σ L_k p_k): `square` is ⟨L²⟩ as filtered, `moments` those of the levels. At most 1: levels never vary too little.
 pub fn spread_factor(moments: [f32; 2], square: f32, visible: f32) -> f32 {
     let mean2 = moments[0] * moments[0];
     let of_levels = moments[1] - mean2;

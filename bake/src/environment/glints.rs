@@ -1,8 +1,9 @@
 //! Radiance of glints under an environment: one draw for the facets of a pixel, f32, as in WGSL.
 //!
 //! Paper: Eq. 17 with the probabilities of Eq. 15 and 21. Deviations:
-//! - what the levels give is brought to the variance that was filtered besides radiance, see
-//!   [`spread_factor`](super::eval::spread_factor);
+//! - what the levels give is brought to the variance that was filtered besides radiance by
+//!   [`spread_factor`](super::eval::spread_factor): each facet that is there takes part of the mean, and part of its
+//!   level. No facet, no light;
 //! - coloured levels: every channel is a mean of its own, so a red lamp's glints are red and their mean stays the smooth
 //!   reflection.
 
@@ -71,6 +72,7 @@ pub fn environment_glints(environment: &Environment, surface: &GlintSurface, bit
     }
     let mut ratios = [0.0; 3];
     let counts = level_counts(environment, &chances, surface.facets, bits);
+    let present = counts.iter().sum::<f32>() / surface.facets;
     if environment.params.coloured {
         let cos_o = surface.normal.dot(surface.view);
         let mirror = 2.0 * cos_o * surface.normal - surface.view;
@@ -84,7 +86,7 @@ pub fn environment_glints(environment: &Environment, surface: &GlintSurface, bit
     }
     let mut radiance = [0.0; 3];
     for c in 0..3 {
-        radiance[c] = chances.smooth[c] * (1.0 + chances.spread * (ratios[c] - 1.0)).max(0.0);
+        radiance[c] = chances.smooth[c] * (present + chances.spread * (ratios[c] - present)).max(0.0);
     }
     radiance
 }
@@ -139,5 +141,5 @@ pub fn glint_relative_variance(chances: &GlintChances, facets: f32) -> f32 {
     }
     let part = facets - facets.floor();
     let per_facet = (chances.moments[1] / mean2 - 1.0).max(0.0);
-    chances.spread * chances.spread * (per_facet / facets + part * (1.0 - part) / (facets * facets))
+    chances.spread * chances.spread * per_facet / facets + part * (1.0 - part) / (facets * facets)
 }

@@ -64,15 +64,13 @@ pub struct FootprintErrors {
     pub texels: f64,
 }
 
-/// Error over `footprints` of a material baked from `map`.
+/// Error over `footprints` of the material that `reference` is of.
 pub fn footprint_errors(
-    map: &NormalMap,
-    material: &Material,
+    reference: &SurfaceReference<'_>,
     footprints: &[Footprint],
     settings: EvalSettings,
 ) -> FootprintErrors {
-    let roughness = material.maps.params.intrinsic_roughness as f64;
-    let reference = SurfaceReference::new(map, material, roughness);
+    let material = reference.material();
     let measured: Vec<(NdfError, usize, f64)> = footprints
         .par_iter()
         .map(|footprint| {

@@ -40,8 +40,9 @@ struct Owner {
 type Shown = (usize, DVec2);
 
 impl<'a> SurfaceReference<'a> {
-    /// Reference for `material`, baked from `map` with `roughness`.
-    pub fn new(map: &'a NormalMap, material: &'a Material, roughness: f64) -> SurfaceReference<'a> {
+    /// Reference for `material`, baked from `map`.
+    pub fn new(map: &'a NormalMap, material: &'a Material) -> SurfaceReference<'a> {
+        let roughness = material.maps.params.intrinsic_roughness as f64;
         let mut steepest = 0.0f64;
         for j in 0..map.height as i64 {
             for i in 0..map.width as i64 {
@@ -51,6 +52,11 @@ impl<'a> SurfaceReference<'a> {
         }
         let owners = find_owners(map, material);
         SurfaceReference { map, material, roughness, mass: DiskMass::new(roughness), steepest, owners }
+    }
+
+    /// The material.
+    pub fn material(&self) -> &'a Material {
+        self.material
     }
 
     /// Palette entry and example position that show at the surface point `u`.
@@ -100,7 +106,7 @@ impl<'a> SurfaceReference<'a> {
         let per_texel = (2.0 * self.steepest / self.roughness).ceil().clamp(4.0, 16.0);
         let (w, h) = (self.map.width as usize * per_texel as usize, self.map.height as usize * per_texel as usize);
         let mut shares = vec![0.0; w * h * self.material.placement.palette.len()];
-        let pitch = sigmas.map(|sigma| (1.0 / per_texel).max(sigma / 160.0));
+        let pitch = sigmas.map(|sigma| (1.0 / per_texel).max(sigma / 400.0));
         self.for_each_point(footprint, axis, sigmas, pitch, |u, weight| {
             let (class, local) = self.shown_at(u);
             let (i, j) = ((local.x * per_texel) as usize, (local.y * per_texel) as usize);

@@ -7,6 +7,7 @@ use glint_bake_core::ndf_maps::bake::{self, NdfMapsOptions};
 use glint_bake_core::ndf_maps::eval::{Material, Terms};
 use glint_bake_core::ndf_maps::measure::{FootprintErrors, footprint_errors};
 use glint_bake_core::ndf_maps::placement::{self, PlacementOptions, StochasticOptions};
+use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
 use glint_bake_core::ndf_maps::surface::EvalSettings;
 use glint_bake_core::ndf_maps::transform::TransformRanges;
 use glint_bake_core::normal_map::NormalMap;
@@ -82,26 +83,27 @@ pub fn example(map: &NormalMap, count: u32) -> Result<Example> {
     for (name, options) in placements {
         let placement = placement::bake(map, maps.params.intrinsic_roughness as f64, &options)?;
         let material = Material { maps: maps.clone(), placement };
+        let reference = SurfaceReference::new(map, &material);
         for anisotropy in ANISOTROPIES {
             for sigma in SIGMAS_TEXELS {
-                let (errors, cost) = measured(map, &material, sigma, anisotropy, count, EvalSettings::default());
+                let (errors, cost) = measured(map, &reference, sigma, anisotropy, count, EvalSettings::default());
                 sizes.push(Size { placement: name, sigma, anisotropy, errors, cost });
             }
         }
         if name == "stochastic" {
             for settings in DIAL {
-                dial.push(dial_setting(map, &material, settings, count.div_ceil(8)));
+                dial.push(dial_setting(map, &reference, settings, count.div_ceil(8)));
             }
         }
     }
     Ok(Example { settings: settings(map)?, sizes, dial })
 }
 
-fn dial_setting(map: &NormalMap, material: &Material, settings: EvalSettings, count: u32) -> Dial {
+fn dial_setting(map: &NormalMap, reference: &SurfaceReference<'_>, settings: EvalSettings, count: u32) -> Dial {
     let mut dial = Dial { settings, mean_error: 0.0, cost: Cost::default() };
     let share = 1.0 / SIGMAS_TEXELS.len() as f64;
     for sigma in SIGMAS_TEXELS {
-        let (errors, cost) = measured(map, material, sigma, 1.0, count, settings);
+        let (errors, cost) = measured(map, reference, sigma, 1.0, count, settings);
         dial.mean_error += errors.e1.mean * share;
         dial.cost.gather += cost.gather * share;
         dial.cost.query += cost.query * share;
@@ -111,7 +113,7 @@ fn dial_setting(map: &NormalMap, material: &Material, settings: EvalSettings, co
 
 fn measured(
     map: &NormalMap,
-    material: &Material,
+    reference: &SurfaceReference<'_>,
     sigma: f64,
     anisotropy: f64,
     count: u32,
@@ -120,10 +122,10 @@ fn measured(
     const SEED: u64 = 5;
     let extent = DVec2::new(map.width as f64, map.height as f64) * 32.0;
     let footprints = sweep_footprints(sigma, anisotropy, extent, count, SEED);
-    let errors = footprint_errors(map, material, &footprints, settings);
+    let errors = footprint_errors(reference, &footprints, settings);
     // The same 64 places whatever was asked, so that costs compare between reports.
     let places = sweep_footprints(sigma, anisotropy, extent, FOOTPRINTS, SEED);
-    (errors, cost(material, &places, settings))
+    (errors, cost(reference.material(), &places, settings))
 }
 
 /// Time of a footprint and of a query, over directions spread where the whole example's NDF lies: the least of some
