@@ -28,6 +28,7 @@ report MAPS="../shared/data/tiny/brushed_16x16.png":
     cargo run --release -p glint-bake-core --example dictionary_report -- --svg docs/dictionary-report.svg --readme README.md > docs/dictionary-report.md
     cargo run --release -p glint-bake-core --example counting_report -- --svg docs/counting-report.svg > docs/counting-report.md
     cargo run --release --example environment_report -- --svg docs/environment-report.svg > docs/environment-report.md
+    cargo run --release --example glint_report -- "${GLINT_DATA:-../shared/data}" > docs/environment-glints.md
     cargo run --release --example area_light_report -- "${GLINT_DATA:-../shared/data}" --svg docs/area-light-report.svg > docs/area-light-report.md
 
 # Fit the LTC tables of area lights anew; they come with the program, and a test checks that this gives the same bytes.

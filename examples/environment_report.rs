@@ -80,6 +80,7 @@ fn cpu_seconds(children: bool) -> f64 {
 
 fn options(levels: u32, storage: Storage, max_error: f64) -> EnvironmentOptions {
     EnvironmentOptions {
+        min_face_size: 1,
         levels: LevelCount::Exactly(levels),
         kernel: Kernel::GgxNl,
         storage,
@@ -234,7 +235,7 @@ fn moment_rows(name: &str, image: &EnvironmentImage, rows: &mut String) {
     let best = |k: usize| (0..FLOORS.len()).map(|f| mean(n + k * FLOORS.len() + f)).fold(f64::INFINITY, f64::min);
     let _ = writeln!(rows, "| {name} | optimal | {one:.3} | {} |", cells(&mean));
     let _ = writeln!(rows, "| {name} | the paper's | {one:.3} | {} |", cells(&best));
-    let options = EnvironmentOptions { measured_texels: 0, ..EnvironmentOptions::default() };
+    let options = EnvironmentOptions { min_face_size: 1, measured_texels: 0, ..EnvironmentOptions::default() };
     let environment = bake(image, 0, &options, &Silent).unwrap_or_else(|e| panic!("{e}"));
     let (mut sum, mut count) = (0.0, 0.0);
     for mip in 3..9 {

@@ -26,7 +26,6 @@ const SURFACES: u32 = 8;
 /// Largest angle of view.
 const MAX_DEGREES: f64 = 60.0;
 const FACE_SIZE: u32 = 128;
-const MIN_FACE_SIZE: u32 = 8;
 /// Draws, and patches of placed facets.
 const PATCHES: u32 = 2000;
 const PURPOSE: u32 = 60;
@@ -196,7 +195,6 @@ fn drawn_lot(environment: &Environment, surface: &GlintSurface, smooth: f64) -> 
 fn baked(image: &EnvironmentImage, levels: u32, level_choice: LevelChoice) -> Environment {
     let options = EnvironmentOptions {
         face_size: FACE_SIZE,
-        min_face_size: MIN_FACE_SIZE,
         levels: LevelCount::Exactly(levels),
         level_choice,
         measured_texels: 0,

@@ -8,7 +8,7 @@ use crate::input::environment::{LoadedEnvironment, load_environment};
 use crate::pack;
 use crate::progress::Stages;
 use clap::ValueEnum;
-use glint_bake_core::environment::options::LevelCount;
+use glint_bake_core::environment::options::{DEFAULT_MIN_FACE_SIZE, LevelCount};
 use glint_bake_core::environment::{EnvironmentOptions, bake, sections};
 use glint_bake_core::error::BakeError;
 use glint_formats::Codec;
@@ -64,9 +64,9 @@ pub struct Args {
     /// Edge of a cube face in texels, a power of two, 4 to 8192
     #[arg(long, value_name = "N", default_value = "256", allow_negative_numbers = true, help_heading = "Bake")]
     pub face_size: u32,
-    /// Edge of a face of the last mip, which has roughness 1
-    #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true, help_heading = "Bake")]
-    pub min_face_size: u32,
+    /// Edge of a face of the last mip, which has roughness 1 [default: 8, or --face-size if smaller]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Bake")]
+    pub min_face_size: Option<u32>,
     /// Radiance levels, 1 to 16, or auto: the fewest that meet --max-moment-error
     #[arg(long, value_name = "K", default_value = "4", value_parser = level_count, help_heading = "Bake")]
     pub levels: u32,
@@ -168,10 +168,14 @@ fn bake_pack(args: &Args, terminal: Terminal) -> Result<(), Failure> {
 }
 
 impl Args {
+    fn min_face_size(&self) -> u32 {
+        self.min_face_size.unwrap_or(DEFAULT_MIN_FACE_SIZE.min(self.face_size))
+    }
+
     fn options(&self) -> EnvironmentOptions {
         EnvironmentOptions {
             face_size: self.face_size,
-            min_face_size: self.min_face_size,
+            min_face_size: self.min_face_size(),
             levels: match self.levels {
                 0 => LevelCount::Fewest(self.max_moment_error),
                 count => LevelCount::Exactly(count),
@@ -214,7 +218,7 @@ impl Args {
         let named = |value: &dyn std::fmt::Debug| format!("{value:?}").to_ascii_lowercase();
         let options = [
             ("face-size", self.face_size.to_string()),
-            ("min-face-size", self.min_face_size.to_string()),
+            ("min-face-size", self.min_face_size().to_string()),
             ("levels", if self.levels == 0 { "auto".into() } else { self.levels.to_string() }),
             (
                 "level-choice",

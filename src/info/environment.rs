@@ -47,7 +47,7 @@ impl EnvironmentInfo {
             )
         };
         format!(
-            "{}² × 6 × {} mips, {}, {} levels with a second moment {} too high, {error}",
+            "{}² × 6 × {} mips, {}, {} levels ({} too much variance to take back at run time), {error}",
             params.face_size,
             params.mips(),
             kib(self.texture_bytes),
@@ -82,7 +82,11 @@ impl EnvironmentInfo {
         let levels: Vec<String> = params.levels.iter().map(|level| format!("{level:.5}")).collect();
         let colours = if params.coloured { ", with colours" } else { "" };
         let _ = writeln!(out, "  levels       {}{colours}: {}", kebab(&params.level_choice), levels.join(" "));
-        let _ = writeln!(out, "  ⟨L²⟩         {} too high on average", percent(measured.second_moment));
+        let _ = writeln!(
+            out,
+            "  ⟨L²⟩         of levels {} too high on average, exact in the alpha of radiance",
+            percent(measured.second_moment)
+        );
         let _ = writeln!(out, "  mips             face     roughness         RMSE  worst texel");
         for (mip, alpha) in params.roughness.iter().enumerate() {
             let error = measured
