@@ -36,7 +36,12 @@ fn sunny(width: u32, height: u32, range: f32) -> EnvironmentImage {
 }
 
 fn options(levels: u32) -> EnvironmentOptions {
-    EnvironmentOptions { face_size: 16, levels: LevelCount::Exactly(levels), ..EnvironmentOptions::default() }
+    EnvironmentOptions {
+        face_size: 16,
+        min_face_size: 1,
+        levels: LevelCount::Exactly(levels),
+        ..EnvironmentOptions::default()
+    }
 }
 
 fn baked(image: &EnvironmentImage, options: &EnvironmentOptions) -> Environment {

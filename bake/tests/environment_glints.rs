@@ -37,6 +37,7 @@ fn lamps() -> EnvironmentImage {
 fn baked(image: &EnvironmentImage, levels: u32, coloured: bool) -> Environment {
     let options = EnvironmentOptions {
         face_size: 64,
+        min_face_size: 1,
         levels: LevelCount::Exactly(levels),
         coloured,
         measured_texels: 0,

@@ -29,6 +29,7 @@ fn image() -> EnvironmentImage {
 fn baked(image: &EnvironmentImage, levels: u32, coloured: bool) -> Environment {
     let options = EnvironmentOptions {
         face_size: 32,
+        min_face_size: 1,
         levels: LevelCount::Exactly(levels),
         coloured,
         measured_texels: 0,
@@ -265,6 +266,7 @@ fn one_level_reflects_the_mean_and_log_uniform_is_eq_18() {
     }
     let options = EnvironmentOptions {
         face_size: 8,
+        min_face_size: 1,
         level_choice: LevelChoice::LogUniform,
         measured_texels: 0,
         ..EnvironmentOptions::default()
