@@ -61,7 +61,7 @@ const FILTER_HEAD: &str = "\n## Filter\n\nFaces of 256, 9 mips, `--kernel ggx-nl
 RMSE and worst texel over mips with\nα ≥ 0.04, largest.\n\n\
 | image | setting | CPU s | RMSE | worst texel | energy |\n| --- | --- | ---: | ---: | ---: | ---: |\n";
 const MIP_HEAD: &str = "\n## Mips\n\n`--max-error 0.005`, each mip: RMSE (worst texel), stored as f32 and as f16, and cmgen's at 1024 samples. \
-What\nf16 adds next to a sun is rounding. Mip 0 is compared with 512 × 512 points a texel, whose own error shows in it.\n\n\
+What\nf16 adds next to a sun is rounding. Mip 0 is compared with means over texels that are exact along 512 lines of each.\n\n\
 | image | storage | 0: α 0 | 1: .004 | 2: .018 | 3: .044 | 4: .086 | 5: .15 | 6: .25 | 7: .42 | 8: 1 |\n\
 | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
 const MOMENT_HEAD: &str = "\n## Second moment of what a facet reflects\n\nMean of |⟨L²⟩ with levels / ⟨L²⟩ − 1| over 48 directions and 5 \

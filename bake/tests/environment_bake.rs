@@ -248,3 +248,16 @@ fn impossible_options_are_refused_by_the_name_of_their_flag() {
         assert!(message.contains(flag), "{message}");
     }
 }
+
+#[test]
+fn the_first_mip_is_the_mean_over_every_texel() {
+    // Pixels that fit no texel, some of them a million times as bright.
+    let image = sunny(101, 51, 1e6);
+    let options = EnvironmentOptions { storage: Storage::F32, measured_texels: 0, ..options(1) };
+    let environment = baked(&image, &options);
+    // The reference's lines leave some 1e-4 where a bright edge runs nearly along them.
+    let errors = quality::compare(&image, &environment, 0, 6 * 16 * 16).into_iter();
+    let worst = errors.map(|c| c.error().abs() / c.exact.luminance).fold(0.0, f64::max);
+    println!("worst texel: {worst:.1e}");
+    assert!(worst <= 1e-3, "{worst}");
+}

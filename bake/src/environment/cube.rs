@@ -5,8 +5,9 @@
 //!
 //! A texel of a side face is bounded by two meridians, so its share of each pixel is an integral over longitude of
 //! differences of sines of latitude. A texel of +Y or −Y is a square seen from the pole: a meridian cuts it between two
-//! radii. Longitudes are divided at texel corners and pixel edges; what is left is smooth and integrated by three Gauss
-//! points. All pieces of a texel are then scaled to its exact solid angle (by 1e-6 or less).
+//! radii. Longitudes are divided at texel corners, at pixel edges, and where an edge of the texel passes from one row of
+//! pixels to the next; what is left is smooth and integrated by three Gauss points. All pieces of a texel are then
+//! scaled to its exact solid angle (by 1e-6 or less).
 
 use super::image::EnvironmentImage;
 use glam::DVec3;
@@ -144,7 +145,19 @@ fn add_side(image: &EnvironmentImage, face: usize, ([s0, s1], [t0, t1]): Square,
     // Longitude falls as s rises: seen from inside, cube faces are mirrored.
     let middle = [FRAC_PI_2, -FRAC_PI_2, 0.0, 0.0, PI, 0.0][face];
     let range = (middle - libm::atan(s1), middle - libm::atan(s0));
-    over_longitudes(image, range, &[], |x, lambda, weight| {
+    // An edge of the texel is at latitude φ with tan φ = −t cos(λ − middle).
+    let cosines = [range.0, range.1].map(|lambda| libm::cos(lambda - middle));
+    let least = cosines[0].min(cosines[1]);
+    let most = if range.0 < middle && middle < range.1 { 1.0 } else { cosines[0].max(cosines[1]) };
+    let mut kinks = Vec::new();
+    for t in [t0, t1] {
+        for tangent in parallels_between(image, -t * least, -t * most) {
+            let angle = libm::acos((-tangent / t).clamp(-1.0, 1.0));
+            kinks.extend([middle - angle, middle + angle]);
+        }
+    }
+    kinks.sort_by(f64::total_cmp);
+    over_longitudes(image, range, &kinks, |x, lambda, weight| {
         let c = libm::cos(lambda - middle);
         let sine = |t: f64| -t * c / (1.0 + t * t * c * c).sqrt();
         add_meridian(image, x, sine(t0), sine(t1), weight, texel);
@@ -164,7 +177,25 @@ fn add_polar(image: &EnvironmentImage, top: bool, ([s0, s1], [t0, t1]): Square, 
         .collect();
     corners.sort_by(f64::total_cmp);
     let range = (corners[0], corners[corners.len() - 1]);
-    over_longitudes(image, range, &corners, |x, lambda, weight| {
+    let mut kinks = corners;
+    let sign = if top { 1.0 } else { -1.0 };
+    let edges = [(true, s0, q0, q1), (true, s1, q0, q1), (false, q0, s0, s1), (false, q1, s0, s1)];
+    for (along_q, fixed, low, high) in edges {
+        // A point of the plane at distance r from the pole has tan φ = ±1 / r.
+        let nearest = if low < 0.0 && high > 0.0 { 0.0 } else { low.abs().min(high.abs()) };
+        let [near, far] = [nearest, low.abs().max(high.abs())].map(|v| fixed.hypot(v));
+        for tangent in parallels_between(image, sign / near, sign / far) {
+            let ratio = (fixed * tangent.abs()).clamp(-1.0, 1.0);
+            let angles = if along_q {
+                [libm::asin(ratio), PI - libm::asin(ratio)]
+            } else {
+                [libm::acos(ratio), -libm::acos(ratio)]
+            };
+            kinks.extend(angles.map(|angle| centre + wrapped(angle - centre)));
+        }
+    }
+    kinks.sort_by(f64::total_cmp);
+    over_longitudes(image, range, &kinks, |x, lambda, weight| {
         let (ds, dq) = (libm::sin(lambda), libm::cos(lambda));
         let (mut near, mut far) = (0.0f64, f64::INFINITY);
         for (d, low, high) in [(ds, s0, s1), (dq, q0, q1)] {
@@ -181,6 +212,14 @@ fn add_polar(image: &EnvironmentImage, top: bool, ([s0, s1], [t0, t1]): Square, 
             add_meridian(image, x, high, low, weight, texel);
         }
     });
+}
+
+/// Tangents of the latitudes between rows of pixels, from one tangent to another.
+fn parallels_between(image: &EnvironmentImage, a: f64, b: f64) -> impl Iterator<Item = f64> {
+    let height = f64::from(image.height);
+    let row_of = |tangent: f64| (0.5 - libm::atan(tangent) / PI) * height;
+    let (first, last) = (row_of(a.max(b)).floor() as u32 + 1, row_of(a.min(b)).ceil() as u32);
+    (first..last).map(move |row| libm::tan(PI * (0.5 - f64::from(row) / height)))
 }
 
 /// An angle's equal in (−π, π].

@@ -19,8 +19,8 @@ const PURPOSE: u32 = 30;
 const FINE_WIDTH: u32 = 256;
 /// Largest relative error of rounding to a half float.
 const HALF_ULP: f64 = 1.0 / 2048.0;
-/// Points a side of a texel of the first mip.
-const SAMPLES: u32 = 512;
+/// Lines over a texel of the first mip.
+const ROWS: u32 = 512;
 
 /// One texel and what it should hold.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +63,7 @@ pub fn compare(image: &EnvironmentImage, environment: &Environment, mip: u32, co
             let texel = ((index / (size * size)) as usize, index % size, index / size % size);
             let (face, i, j) = texel;
             let exact = if alpha == 0.0 {
-                texel_mean(image, face, i, j, size, SAMPLES)
+                texel_mean(image, face, i, j, size, ROWS)
             } else {
                 filtered(image, kernel, texel_direction(face, i, j, size), alpha)
             };

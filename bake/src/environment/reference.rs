@@ -126,18 +126,24 @@ pub fn second_moments(
     (with_levels.into_iter().map(|sum| sum / whole).collect(), exact / whole)
 }
 
-/// Mean radiance over the part of the sphere that texel (i, j) of a face covers, by `samples`² points.
-pub fn texel_mean(image: &EnvironmentImage, face: usize, i: u32, j: u32, size: u32, samples: u32) -> Filtered {
+/// Mean radiance over the part of the sphere that texel (i, j) of a face covers. Exact along `rows` lines of the texel,
+/// which every edge of a pixel that crosses them cuts in pieces of one radiance; the midpoint rule across them.
+pub fn texel_mean(image: &EnvironmentImage, face: usize, i: u32, j: u32, size: u32, rows: u32) -> Filtered {
+    let place = |k: u32, part: f64| 2.0 * (f64::from(k) + part) / f64::from(size) - 1.0;
+    let (left, right) = (place(i, 0.0), place(i, 1.0));
     let mut sum = Filtered::default();
     let mut whole = 0.0;
-    for b in 0..samples {
-        for a in 0..samples {
-            let place = |k: u32, part: u32| {
-                2.0 * (f64::from(k) + (f64::from(part) + 0.5) / f64::from(samples)) / f64::from(size) - 1.0
-            };
-            let ray = super::cube::face_direction(face, place(i, a), place(j, b));
-            let weight = ray.length().powi(-3);
-            let pixel = pixel_of(image, ray.normalize());
+    for row in 0..rows {
+        let t = place(j, (f64::from(row) + 0.5) / f64::from(rows));
+        let mut cuts = pixel_edges(image, face, t, left, right);
+        cuts.extend([left, right]);
+        cuts.sort_by(f64::total_cmp);
+        // The solid angle from the line's middle to s, a unit of t: ∫ ds / (1 + s² + t²)^1.5.
+        let solid_angle = |s: f64| s / ((1.0 + t * t) * (1.0 + s * s + t * t).sqrt());
+        for cut in cuts.windows(2) {
+            let weight = solid_angle(cut[1]) - solid_angle(cut[0]);
+            let middle = super::cube::face_direction(face, 0.5 * (cut[0] + cut[1]), t);
+            let pixel = pixel_of(image, middle.normalize());
             let l = image.luminance(pixel);
             (0..3).for_each(|c| sum.rgb[c] += weight * f64::from(image.pixels[pixel][c]));
             sum.luminance += weight * l;
@@ -146,6 +152,36 @@ pub fn texel_mean(image: &EnvironmentImage, face: usize, i: u32, j: u32, size: u
         }
     }
     Filtered { rgb: sum.rgb.map(|c| c / whole), luminance: sum.luminance / whole, square: sum.square / whole }
+}
+
+/// Where edges of pixels, prolonged over the sphere, cut the line of a face at `t` between `left` and `right`.
+fn pixel_edges(image: &EnvironmentImage, face: usize, t: f64, left: f64, right: f64) -> Vec<f64> {
+    // Points of the line are o + s d.
+    let o = super::cube::face_direction(face, 0.0, t);
+    let d = super::cube::face_direction(face, 1.0, t) - o;
+    let mut cuts = Vec::new();
+    let mut add = |s: f64| {
+        if s > left && s < right {
+            cuts.push(s);
+        }
+    };
+    for column in 0..image.width {
+        // A meridian lies in the plane of the axis and of its direction at the equator.
+        let east = direction(2.0 * PI * (f64::from(column) / f64::from(image.width) - 0.5), 0.0);
+        let normal = DVec3::new(east.z, 0.0, -east.x);
+        add(-normal.dot(o) / normal.dot(d));
+    }
+    for row in 1..image.height {
+        // A parallel is a cone: y² = sin² |o + s d|², which is quadratic in s.
+        let sine2 = image.sine(f64::from(row)).powi(2);
+        let a = d.y * d.y - sine2 * d.length_squared();
+        let b = d.y * o.y - sine2 * d.dot(o);
+        let c = o.y * o.y - sine2 * o.length_squared();
+        let root = (b * b - a * c).max(0.0).sqrt();
+        add((-b + root) / a);
+        add((-b - root) / a);
+    }
+    cuts
 }
 
 /// Index of the pixel in a direction.
