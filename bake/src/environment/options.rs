@@ -8,7 +8,7 @@ use glint_formats::environment::{Kernel, LevelChoice, MAX_FACE_SIZE, MAX_LEVELS,
 pub const MIN_FACE_SIZE: u32 = 4;
 /// Error of radiance that can be asked for; sums in single precision do not carry smaller ones.
 pub const ERROR_RANGE: (f64, f64) = (1e-4, 0.2);
-/// Edge of a face of the last mip by default: trilinear look-ups of rough lobes in coarser faces are off by a tenth.
+/// Edge of a face of the last mip by default; coarser faces are too coarse for trilinear look-ups of rough lobes.
 pub const DEFAULT_MIN_FACE_SIZE: u32 = 8;
 /// Darkest radiance that the paper's levels tell apart, by default.
 pub const DEFAULT_FLOOR: f64 = 1e-3;
