@@ -18,23 +18,9 @@ pub(super) fn decode(
     options: &InputOptions,
     notes: &mut Vec<String>,
 ) -> std::result::Result<Pixels, InputError> {
-    check_header(path, bytes, options)?;
-    let image = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(|e| from_exr(path, e))?;
+    let image = first_layer(path, bytes, options)?;
     let layer = &image.layer_data;
     let channels = &layer.channel_data.list;
-    if let Some(odd) = channels.iter().find(|c| c.sampling != Vec2(1, 1)) {
-        return Err(InputError::unsupported(
-            path,
-            format!("channel {} is subsampled; expected one value a texel: export it unsubsampled", odd.name),
-        ));
-    }
     let (width, height) = (layer.size.width() as u32, layer.size.height() as u32);
     let values = if options.height.is_some() {
         Values::Grey(one_channel(path, channels)?)
@@ -52,23 +38,9 @@ pub(super) fn decode_radiance(
     bytes: &[u8],
     options: &InputOptions,
 ) -> std::result::Result<(u32, u32, Vec<[f32; 3]>), InputError> {
-    check_header(path, bytes, options)?;
-    let image = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(|e| from_exr(path, e))?;
+    let image = first_layer(path, bytes, options)?;
     let layer = &image.layer_data;
     let channels = &layer.channel_data.list;
-    if let Some(odd) = channels.iter().find(|c| c.sampling != Vec2(1, 1)) {
-        return Err(InputError::unsupported(
-            path,
-            format!("channel {} is subsampled; expected one value a pixel: export it as RGB", odd.name),
-        ));
-    }
     let window = image.attributes.display_window.size;
     if window != layer.size {
         return Err(InputError::unsupported(
@@ -97,6 +69,31 @@ pub(super) fn decode_radiance(
     let (red, green, blue) = (values(red), values(green), values(blue));
     let pixels = (0..red.len()).map(|i| [red[i], green[i], blue[i]]).collect();
     Ok((layer.size.width() as u32, layer.size.height() as u32, pixels))
+}
+
+/// Reads the first layer, whose channels have a value for every texel.
+fn first_layer(
+    path: &Path,
+    bytes: &[u8],
+    options: &InputOptions,
+) -> std::result::Result<Image<Layer<AnyChannels<FlatSamples>>>, InputError> {
+    check_header(path, bytes, options)?;
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(|e| from_exr(path, e))?;
+    let channels = &image.layer_data.channel_data.list;
+    if let Some(odd) = channels.iter().find(|c| c.sampling != Vec2(1, 1)) {
+        return Err(InputError::unsupported(
+            path,
+            format!("channel {} is subsampled; expected one value a texel: export it unsubsampled", odd.name),
+        ));
+    }
+    Ok(image)
 }
 
 /// Looks at the sizes that the header claims, before anything is allocated for them.
