@@ -1,6 +1,5 @@
 //! Area lights on real maps: the highlight, against the reference over distance. Few places and scenes; the report has more.
 
-#[allow(dead_code)] // It lists the crops of other methods too.
 mod real_maps;
 
 use glam::DVec2;
