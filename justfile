@@ -22,6 +22,10 @@ lint:
 demo *ARGS:
     cargo run --release --bin glint-bake -- demo {{ARGS}}
 
+# Static programs for any Linux of this processor, without shared libraries, into target/TRIPLE/release.
+dist TRIPLE="x86_64-unknown-linux-gnu":
+    RUSTFLAGS="-C target-feature=+crt-static" cargo build --release --locked --target {{TRIPLE}}
+
 # Measure speed against error anew: the reports and plots in docs/, and their headlines in the README.
 report MAPS="../shared/data/tiny/brushed_16x16.png":
     cargo run --release --bin glint-bake -- report {{MAPS}} -o docs
