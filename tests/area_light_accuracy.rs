@@ -1,4 +1,5 @@
-//! Area lights on real maps: the highlight, against the reference over distance. Few places and scenes; the report has more.
+//! Area lights on real maps: the highlight, against the reference over distance. Parts of the maps; the report has
+//! whole ones.
 
 mod real_maps;
 
@@ -6,7 +7,9 @@ use glam::DVec2;
 use glint_bake_core::area_light::eval::LOBES;
 use glint_bake_core::area_light::fetch::Maps;
 use glint_bake_core::area_light::material::decode_tables;
-use glint_bake_core::area_light::quality::{Comparison, HighlightError, RadianceGrid, highlight_error, scenes};
+use glint_bake_core::area_light::quality::{
+    Comparison, HighlightError, RadianceGrid, grid_weights, highlight_error, scenes,
+};
 use glint_bake_core::area_light::reference::{Scene, footprint_normals, footprint_radiance};
 use glint_bake_core::area_light::{AreaLightOptions, bake};
 use glint_bake_core::footprint::Footprint;
@@ -23,12 +26,12 @@ const MAPS: [(&str, &str); 5] = [
     ("diamond plate", "normals/diamond_plate_pmndrs0008.jpg"),
 ];
 
-/// Every fifth scene of the report, so that views, lights and base roughness all vary, with a coarse grid of the reference.
-fn some_scenes() -> &'static [(Scene, RadianceGrid)] {
+/// The scenes of the report, with a coarser grid of the reference.
+fn all_scenes() -> &'static [(Scene, RadianceGrid)] {
     static SCENES: OnceLock<Vec<(Scene, RadianceGrid)>> = OnceLock::new();
     SCENES.get_or_init(|| {
-        let some = [0.05, 0.15].into_iter().flat_map(scenes).step_by(5);
-        some.map(|scene| (scene, RadianceGrid::new(&scene, 81, 3e-3))).collect()
+        let all = [0.05, 0.15].into_iter().flat_map(scenes);
+        all.map(|scene| (scene, RadianceGrid::new(&scene, 81, 3e-3))).collect()
     })
 }
 
@@ -36,31 +39,42 @@ fn measured(data: &std::path::Path, file: &str, sizes: &[f64]) -> Vec<HighlightE
     let map = load(data, file, Some((100, 60, 256)));
     let material = bake(&map, &AreaLightOptions { anisotropic: true, ..Default::default() }, 1 << 30, &Silent).unwrap();
     let tables = decode_tables(&material.tables);
-    let over = Comparison { scenes: some_scenes(), places: 8, lobes: LOBES, seed: 1 };
-    sizes.iter().map(|&size| highlight_error(&map, &Maps::new(&material), &tables, size, &over)).collect()
+    let measure = |&size: &f64| {
+        // Small footprints see less of the map each, and cost less.
+        let places = (4096.0 / size).clamp(64.0, 1024.0) as u32;
+        let over = Comparison { scenes: all_scenes(), places, lobes: LOBES, seed: 1 };
+        highlight_error(&map, &Maps::new(&material), &tables, size, &over)
+    };
+    sizes.iter().map(measure).collect()
 }
+
+/// Footprints in texels.
+const SIZES: [f64; 9] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0];
 
 #[test]
 fn highlights_keep_their_width_over_distance() {
     let Some(data) = data() else { return };
     let mut ratios = Vec::new();
     for (name, file) in MAPS {
-        let (mut ours, mut papers) = (0.0, 0.0);
-        for row in measured(&data, file, &[4.0, 16.0, 64.0, 256.0]) {
-            let [plain, paper, _, isotropic, _, anisotropic] = row.rmse;
-            ours += isotropic;
-            papers += paper;
-            assert!(isotropic < plain && anisotropic < plain, "{name}: {row:?}");
-            ratios.push(isotropic / plain);
-            if name == "brushed" && row.footprint_texels >= 16.0 {
-                assert!(anisotropic < 0.75 * isotropic, "{row:?}");
+        for row in measured(&data, file, &SIZES) {
+            let [plain, _, _, isotropic, _, anisotropic] = row.rmse;
+            for method in [3, 5] {
+                // With so many places a ratio says something: its standard error is small against its distance to 1.
+                assert!(row.to_paper_error[method] < 0.05, "{name}: {row:?}");
+                assert!(row.to_paper[method] <= 1.02, "{name}: {row:?}");
+            }
+            if row.footprint_texels >= 4.0 {
+                assert!(isotropic < plain && anisotropic < plain, "{name}: {row:?}");
+                ratios.push(isotropic / plain);
+            }
+            if name == "brushed" {
+                let most = if row.footprint_texels >= 16.0 { 0.75 } else { 0.9 };
+                assert!(anisotropic < most * isotropic, "{row:?}");
             }
         }
-        // Over all distances; at single ones, with so few places, either can be ahead. The report has each distance.
-        assert!(ours <= 1.02 * papers, "{name}: {ours} {papers}");
     }
     let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
-    assert!(mean <= 0.5, "{mean}: {ratios:?}");
+    assert!(ratios.len() == 35 && mean <= 0.5, "{mean}: {ratios:?}");
 }
 
 #[test]
@@ -68,10 +82,10 @@ fn the_tabulated_reference_is_the_direct_one() {
     let Some(data) = data() else { return };
     let map = load(&data, MAPS[3].1, Some((100, 60, 64)));
     let (mut errors, mut power) = (0.0, 0.0);
-    for (k, (scene, grid)) in some_scenes().iter().enumerate() {
+    for (k, (scene, grid)) in all_scenes().iter().enumerate().step_by(5) {
         let footprint = Footprint::new(DVec2::new(20.0 + 7.0 * k as f64, 31.3), 0.5, 1.0, 0.0);
         let exact = footprint_radiance(&map, &footprint, scene, 1e-3);
-        let found: f64 = footprint_normals(&map, &footprint, 4.0, 256).iter().map(|&(w, s)| w * grid.at(s)).sum();
+        let found = grid.mean(&grid_weights(&footprint_normals(&map, &footprint, 4.0, 256), grid.size()));
         errors += (found - exact).powi(2);
         power += exact * exact;
     }

@@ -2,7 +2,7 @@
 
 use glint_bake_core::counting::binomial::whole_count;
 use glint_bake_core::counting::multinomial::tree_leaves;
-use glint_bake_core::counting::{MAX_LEVELS, multinomial};
+use glint_bake_core::counting::{Count, MAX_LEVELS, multinomial};
 use glint_bake_core::rng::ItemRng;
 
 fn words(rng: &mut ItemRng) -> [u32; MAX_LEVELS] {
@@ -27,8 +27,9 @@ fn counts_are_whole_and_add_up() {
             for _ in 0..100 {
                 let bits = words(&mut rng);
                 let counts = multinomial(n, &all, levels, &bits);
-                let sum: f64 = counts.iter().map(|c| f64::from(*c)).sum();
-                let rounding = if n <= 16_777_216.0 { 0.0 } else { f64::from(n) * levels as f64 * 2f64.powi(-23) };
+                let counts = counts.map(f64::from);
+                let sum: f64 = counts.iter().sum();
+                let rounding = if n <= 1e13 { 0.0 } else { f64::from(n) * levels as f64 * 2f64.powi(-47) };
                 let whole = f64::from(whole_count(n, bits[0]));
                 assert!((sum - whole).abs() <= rounding, "K {levels} N {n}: {counts:?}");
                 assert!(counts.iter().all(|c| *c >= 0.0 && c.fract() == 0.0));
@@ -55,12 +56,12 @@ fn means_and_covariances_are_the_multinomials() {
         let mut product = [[0.0; MAX_LEVELS]; MAX_LEVELS];
         let mut square = [[0.0; MAX_LEVELS]; MAX_LEVELS];
         for _ in 0..draws {
-            let counts = multinomial(n, &all, levels, &words(&mut rng));
+            let counts = multinomial(n, &all, levels, &words(&mut rng)).map(f64::from);
             for i in 0..levels {
-                let a = f64::from(counts[i]) - trials * chance[i];
+                let a = counts[i] - trials * chance[i];
                 shift[i] += a;
                 for j in 0..levels {
-                    let b = a * (f64::from(counts[j]) - trials * chance[j]);
+                    let b = a * (counts[j] - trials * chance[j]);
                     product[i][j] += b;
                     square[i][j] += b * b;
                 }
@@ -87,6 +88,33 @@ fn means_and_covariances_are_the_multinomials() {
     }
 }
 
+/// Counts that one f32 cannot tell apart: chances ½, ¼, ⅛ … are exact, so mean and variance must be too.
+#[test]
+fn counts_to_1e16_vary_as_they_should() {
+    let draws = 40_000u32;
+    for (item, n) in [1e12f32, 1e14, 1e16].into_iter().enumerate() {
+        // Branches of ½ and ½ all down the tree, but the last: 2⁻²⁰ and the rest.
+        let mut all = [0.125; MAX_LEVELS];
+        (all[6], all[7]) = (0.25 * 2f32.powi(-20), 0.25 - 0.25 * 2f32.powi(-20));
+        let mut rng = ItemRng::new(23, 7, item as u32);
+        let mut moments = [[0.0; 3]; 8];
+        for _ in 0..draws {
+            let counts = multinomial(n, &all, 8, &words(&mut rng)).map(f64::from);
+            for (k, moments) in moments.iter_mut().enumerate() {
+                let d = counts[k] - f64::from(n) * f64::from(all[k]);
+                (0..3).for_each(|power| moments[power] += [d, d * d, d * d * d * d][power] / f64::from(draws));
+            }
+        }
+        for (k, [mean, square, fourth]) in moments.into_iter().enumerate() {
+            let p = f64::from(all[k]);
+            let variance = f64::from(n) * p * (1.0 - p);
+            let z = mean / (variance / f64::from(draws)).sqrt();
+            let z_variance = (square - variance) / ((fourth - square * square) / f64::from(draws)).sqrt();
+            assert!(z.abs() < 4.0 && z_variance.abs() < 4.0, "N {n:e} level {k}: z {z}, of the variance {z_variance}");
+        }
+    }
+}
+
 /// χ² of three facets on five levels against n! ∏ p^k / k!.
 #[test]
 fn few_facets_follow_the_multinomial_itself() {
@@ -96,7 +124,7 @@ fn few_facets_follow_the_multinomial_itself() {
     let mut rng = ItemRng::new(23, 3, 0);
     let mut seen = std::collections::BTreeMap::<[u32; 5], u32>::new();
     for _ in 0..draws {
-        let counts = multinomial(3.0, &all, 5, &words(&mut rng));
+        let counts = multinomial(3.0, &all, 5, &words(&mut rng)).map(Count::value);
         *seen.entry(std::array::from_fn(|i| counts[i] as u32)).or_default() += 1;
     }
     let (mut chi2, mut cells, mut mass) = (0.0, 0, 0.0);
@@ -149,17 +177,17 @@ fn degenerate_weights() {
             for only in 0..levels {
                 let mut all = [0.0; MAX_LEVELS];
                 all[only] = 1e-30;
-                let counts = multinomial(37.0, &all, levels, &bits);
+                let counts = multinomial(37.0, &all, levels, &bits).map(Count::value);
                 assert_eq!(counts[only], 37.0);
                 assert_eq!(counts.iter().sum::<f32>(), 37.0);
             }
-            let black = multinomial(37.0, &[0.0; MAX_LEVELS], levels, &bits);
+            let black = multinomial(37.0, &[0.0; MAX_LEVELS], levels, &bits).map(Count::value);
             assert_eq!((black[0], black.iter().sum::<f32>()), (37.0, 37.0));
-            let invalid = multinomial(5.0, &[f32::NAN; MAX_LEVELS], levels, &bits);
+            let invalid = multinomial(5.0, &[f32::NAN; MAX_LEVELS], levels, &bits).map(Count::value);
             assert_eq!(invalid.iter().sum::<f32>(), 5.0);
         }
-        assert_eq!(multinomial(0.0, &[1.0; MAX_LEVELS], 16, &bits), [0.0; MAX_LEVELS]);
-        assert_eq!(multinomial(1e16, &[1.0; MAX_LEVELS], 1, &bits)[0], 1e16);
+        assert_eq!(multinomial(0.0, &[1.0; MAX_LEVELS], 16, &bits), [Count::default(); MAX_LEVELS]);
+        assert_eq!(multinomial(1e16, &[1.0; MAX_LEVELS], 1, &bits)[0], Count::from(1e16));
     }
     assert_eq!([1, 2, 3, 4, 5, 8, 9, 16].map(tree_leaves), [1, 2, 4, 4, 8, 8, 16, 16]);
 }

@@ -1,5 +1,6 @@
 //! The f64 reference against products, sums and closed forms that share nothing with it.
 
+use glint_bake_core::counting::Count;
 use glint_bake_core::counting::quality::{Outcome, SecondWord, compare, outcomes};
 use glint_bake_core::counting::reference::ExactBinomial;
 
@@ -87,7 +88,7 @@ fn outcomes_of_a_known_draw() {
         } else {
             0.0
         };
-        [hits, 10.0 - hits]
+        [hits, 10.0 - hits].map(Count::from)
     };
     for second in [SecondWord::Bisected, SecondWord::Shares(8)] {
         let found = outcomes(draw, second);
@@ -109,7 +110,8 @@ fn measures_of_a_known_draw() {
     assert!((q.variance_error + 1.0).abs() < 1e-12);
     assert!((q.wasserstein - 1.0).abs() < 1e-12);
     assert!((q.sum_error - 0.25).abs() < 1e-12);
-    let right = outcomes(|[_, w]| if w < 1 << 31 { [1.0, 0.0] } else { [0.0, 1.0] }, SecondWord::Bisected);
+    let right =
+        outcomes(|[_, w]| (if w < 1 << 31 { [1.0, 0.0] } else { [0.0, 1.0] }).map(Count::from), SecondWord::Bisected);
     let q = compare(&right, &exact);
     assert!(q.mean_error == 0.0 && q.variance_error == 0.0 && q.wasserstein == 0.0 && q.sum_error == 0.0);
 }

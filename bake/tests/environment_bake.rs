@@ -141,6 +141,45 @@ fn every_mip_is_as_near_to_the_definition_as_was_asked() {
     }
 }
 
+/// A sun of a few texels decides what rounding costs, and the factor of stored radiance follows it.
+#[test]
+fn a_sun_rounds_well() {
+    let wide = EnvironmentOptions { face_size: 64, min_face_size: 16, measured_texels: 0, ..options(1) };
+    for (range, chosen) in [(1.0f32, false), (1e6, true), (3.3e7, true)] {
+        let mut pixels = sunny(256, 128, 1.0).pixels;
+        pixels[37 * 256 + 120] = [range, 0.9 * range, 0.8 * range];
+        let image = EnvironmentImage::new(256, 128, pixels).unwrap().0;
+        let exact = baked(&image, &EnvironmentOptions { storage: Storage::F32, ..wide });
+        let half = baked(&image, &wide);
+        let scale = half.params.radiance_scale;
+        assert_eq!(scale.log2().fract() != 0.0, chosen, "{range}: {scale}");
+        assert_eq!(f64::from(scale as f32), scale);
+        let mean = luminance(image.mean());
+        let rounding = |scale: f64, mip: u32| {
+            let size = exact.size(mip);
+            let all = (0..6 * size * size).map(|k| {
+                let texel = exact.radiance_texel(mip, (k / (size * size)) as usize, k % size, k / size % size);
+                let error = [0, 1, 2].map(|c| {
+                    let value = f64::from(texel[c]);
+                    half::f16::from_f32((value / scale) as f32).to_f64() * scale - value
+                });
+                luminance(error).powi(2)
+            });
+            (all.sum::<f64>() / f64::from(6 * size * size)).sqrt() / mean
+        };
+        for mip in 0..3 {
+            let recorded = half.params.measured.rounding[mip as usize];
+            let (found, plain) = (rounding(scale, mip), rounding(scale.log2().floor().exp2(), mip));
+            // The recorded one is that of numbers in f64.
+            assert!((recorded / found - 1.0).abs() < 0.02, "{range} mip {mip}: {recorded} {found}");
+            assert!(recorded <= 0.02, "{range} mip {mip}: {recorded}");
+            if chosen && mip == 0 {
+                assert!(found < 0.5 * plain, "{range} mip {mip}: {found} {plain}");
+            }
+        }
+    }
+}
+
 #[test]
 fn the_first_mip_keeps_areas_and_energy() {
     let image = sunny(100, 50, 1e6);

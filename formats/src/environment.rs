@@ -85,6 +85,8 @@ pub struct MeasuredError {
     /// Relative error of the second moment of a facet's radiance with these levels: mean over directions and
     /// roughnesses, by the bake's own estimate.
     pub second_moment: f64,
+    /// A mip: root mean square error of luminance that rounding to the storage makes, over all texels, over the mean.
+    pub rounding: Vec<f64>,
 }
 
 /// Parameters of an environment.
@@ -98,7 +100,8 @@ pub struct EnvironmentParams {
     pub storage: Storage,
     /// GGX roughness α of each mip, rising from 0.
     pub roughness: Vec<f64>,
-    /// Stored radiance times this is radiance; a power of two.
+    /// Stored radiance times this is radiance; exact in f32. Where a sun is a few texels, it is chosen so that they round
+    /// well.
     pub radiance_scale: f64,
     /// Radiance (luminance) of each level, rising; the first is 0 unless it is the only one.
     pub levels: Vec<f64>,

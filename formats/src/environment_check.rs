@@ -79,6 +79,7 @@ fn check_parameters(params: &EnvironmentParams) -> Result<(), String> {
     let measured = &params.measured;
     let errors = measured.mips.iter().flat_map(|mip| [mip.rmse, mip.worst]);
     let all = errors.chain([measured.energy, measured.second_moment]).chain(params.mean_radiance);
+    let all = all.chain(measured.rounding.iter().copied());
     for value in all {
         if !(value >= 0.0 && value.is_finite()) {
             return Err(format!("expected means and errors that are finite and not negative, found {value}"));

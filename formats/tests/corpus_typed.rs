@@ -280,7 +280,7 @@ fn area_light_cases() -> Vec<Case> {
 
 #[test]
 fn every_way_an_environment_can_be_wrong_is_found() {
-    let edits: [fn(&mut EnvironmentParams); 15] = [
+    let edits: [fn(&mut EnvironmentParams); 16] = [
         |params| params.face_size = 0,
         |params| params.face_size = 3,
         |params| params.face_size = 1 << 31,
@@ -296,6 +296,7 @@ fn every_way_an_environment_can_be_wrong_is_found() {
         |params| params.mean_radiance[1] = f64::NAN,
         |params| params.measured.energy = f64::INFINITY,
         |params| params.measured.mips[1].worst = -1.0,
+        |params| params.measured.rounding[0] = f64::NAN,
     ];
     for edit in edits {
         assert_eq!(codes(&environment_with_params(edit)), [IssueCode::EnvironmentParameters]);

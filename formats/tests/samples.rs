@@ -198,6 +198,7 @@ pub fn environment_params() -> EnvironmentParams {
             texels: 16,
             energy: 1e-6,
             second_moment: 0.1,
+            rounding: vec![2e-4; 2],
         },
     }
 }

@@ -1,11 +1,11 @@
 //! `glint-bake area-light`: one normal map in, a verified pack out. First everything is checked, then work begins.
 
 use super::deliver::Delivery;
-use super::ndf_maps::{ChannelsArg, NormalY, WrapArg, digest, unique_name};
-use crate::cli::{RunFlags, Terminal, values};
+use super::normal_maps::{InputFlags, check_name, digest, unique_name};
+use crate::cli::{RunFlags, Terminal};
 use crate::exit::Failure;
 use crate::info::kib;
-use crate::input::{Crop, InputOptions, LoadedMap, load_normal_map};
+use crate::input::{LoadedMap, load_normal_map};
 use crate::pack;
 use crate::progress::Stages;
 use clap::ValueEnum;
@@ -48,25 +48,9 @@ pub struct Args {
     #[arg(long, help_heading = "Bake")]
     pub compress: bool,
 
-    /// Use only this part of the map
-    #[arg(long, value_name = "WxH+X+Y", value_parser = values::crop, help_heading = "Input")]
-    pub crop: Option<Crop>,
-    /// Which way green points: up (OpenGL) or down (DirectX)
-    #[arg(long, value_name = "AXIS", default_value = "up", help_heading = "Input")]
-    pub normal_y: NormalY,
-    /// What lies beyond the map's edge
-    #[arg(long, value_name = "WRAP", default_value = "repeat", help_heading = "Input")]
-    pub wrap: WrapArg,
-    /// Channels that hold the normal; xy computes z
-    #[arg(long, value_name = "CHANNELS", default_value = "xyz", help_heading = "Input")]
-    pub channels: ChannelsArg,
-    /// Read a height map; SCALE is the height of white in texels
-    #[arg(long, value_name = "SCALE", value_parser = values::non_zero, allow_negative_numbers = true, help_heading = "Input")]
-    pub height: Option<f32>,
-    /// Take the values of a file tagged as sRGB as they are
-    #[arg(long, help_heading = "Input")]
-    pub assume_linear: bool,
-
+    /// How the map is read.
+    #[command(flatten)]
+    input: InputFlags,
     #[command(flatten)]
     run: RunFlags,
 }
@@ -93,7 +77,7 @@ fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let inputs = [args.map.clone()];
     let delivery = Delivery { output: &args.output, inputs: &inputs, run: &args.run };
     delivery.check()?;
-    let loaded = load_normal_map(&args.map, &args.input_options())?;
+    let loaded = load_normal_map(&args.map, &args.input.options(args.run.max_memory))?;
     let digest = digest(&args.map, &loaded)?;
     for warning in &loaded.warnings {
         terminal.warn(&format!("{}: {warning}", args.map.display()));
@@ -132,26 +116,9 @@ impl Args {
     }
 
     fn name(&self) -> Result<String, Failure> {
-        use glint_formats::container::MAX_NAME_BYTES;
         let Some(name) = &self.name else { return Ok(unique_name(&self.map, &[])) };
-        if name.is_empty() || name.len() > MAX_NAME_BYTES || name.chars().any(char::is_control) {
-            return Err(Failure::usage(format!(
-                "--name: expected 1 to {MAX_NAME_BYTES} bytes without control characters, found {name:?}"
-            )));
-        }
+        check_name(name)?;
         Ok(name.clone())
-    }
-
-    fn input_options(&self) -> InputOptions {
-        InputOptions {
-            y: self.normal_y.into(),
-            wrap: self.wrap.into(),
-            channels: self.channels.into(),
-            height: self.height,
-            crop: self.crop,
-            assume_linear: self.assume_linear,
-            max_memory: self.run.max_memory,
-        }
     }
 
     /// Bytes of the textures of a map.
@@ -165,29 +132,17 @@ impl Args {
 
     /// Where the pack comes from. Flags that do not change its bytes are left out.
     fn provenance(&self, loaded: &LoadedMap, digest: InputDigest) -> Provenance {
-        let debug = |value: &dyn std::fmt::Debug| format!("{value:?}").to_ascii_lowercase();
         let mut options = vec![
             ("base-roughness", self.base_roughness.to_string()),
             ("anisotropic", self.anisotropic.to_string()),
-            ("format", debug(&self.format)),
-            ("normal-y", debug(&self.normal_y)),
-            ("wrap", debug(&self.wrap)),
-            ("channels", debug(&self.channels)),
+            ("format", format!("{:?}", self.format).to_ascii_lowercase()),
         ];
-        if let Some(c) = self.crop {
-            options.push(("crop", format!("{}x{}+{}+{}", c.w, c.h, c.x, c.y)));
-        }
-        if let Some(scale) = self.height {
-            options.push(("height", scale.to_string()));
-        }
-        if self.assume_linear {
-            options.push(("assume-linear", "true".into()));
-        }
+        options.extend(self.input.provenance());
         let notes = loaded.warnings.iter().map(|warning| format!("{}: {warning}", digest.name)).collect();
         Provenance {
             options: options.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
             inputs: vec![digest],
-            normal_convention: format!("y-{}", debug(&self.normal_y)),
+            normal_convention: self.input.normal_convention(),
             notes,
             ..pack::provenance("area-light")
         }

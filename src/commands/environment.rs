@@ -9,12 +9,12 @@ use crate::pack;
 use crate::progress::Stages;
 use clap::ValueEnum;
 use glint_bake_core::environment::options::{DEFAULT_MIN_FACE_SIZE, LevelCount};
-use glint_bake_core::environment::{EnvironmentOptions, bake, sections};
+use glint_bake_core::environment::{EnvironmentOptions, bake, quality, sections};
 use glint_bake_core::error::BakeError;
 use glint_formats::Codec;
-use glint_formats::environment::{Kernel, LevelChoice, Storage};
+use glint_formats::environment::{EnvironmentParams, Kernel, LevelChoice, Storage};
 use glint_formats::provenance::Provenance;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What makes an environment smaller.
 const SMALLER: &str = "give a smaller --face-size or fewer --levels";
@@ -161,10 +161,25 @@ fn bake_pack(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let stages = Stages::new(terminal);
     let environment = bake(&loaded.image, loaded.negative_pixels, &options, &stages)
         .map_err(|error| Failure::bake(&args.input, &error))?;
+    warn_of_rounding(&environment.params, &args.input, terminal);
     let codec = if args.compress { Codec::Zstd } else { Codec::None };
     let sections = sections::to_sections(&args.name(), &environment, codec);
     let bytes = pack::seal(&args.provenance(&loaded), sections)?;
     delivery.write(bytes, SMALLER, terminal)
+}
+
+/// Half floats cannot hold every sun: says where they alone are off by more than was asked.
+fn warn_of_rounding(params: &EnvironmentParams, input: &Path, terminal: Terminal) {
+    for (mip, rounding) in params.measured.rounding.iter().enumerate() {
+        let most = quality::allowed_error(params, mip);
+        if *rounding > most {
+            terminal.warn(&format!(
+                "{}: mip {mip}: half floats alone make an error of {rounding:.4} of the mean, more than the {most} asked; \
+                 give --format f32",
+                input.display()
+            ));
+        }
+    }
 }
 
 impl Args {

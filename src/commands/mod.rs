@@ -7,6 +7,7 @@ mod dictionary;
 mod environment;
 mod info;
 mod ndf_maps;
+mod normal_maps;
 mod preview;
 mod report;
 

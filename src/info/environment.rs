@@ -87,7 +87,7 @@ impl EnvironmentInfo {
             "  ⟨L²⟩         of levels {} too high on average, exact in the alpha of radiance",
             percent(measured.second_moment)
         );
-        let _ = writeln!(out, "  mips             face     roughness         RMSE  worst texel");
+        let _ = writeln!(out, "  mips             face     roughness         RMSE  worst texel     rounding");
         for (mip, alpha) in params.roughness.iter().enumerate() {
             let error = measured
                 .mips
@@ -95,10 +95,11 @@ impl EnvironmentInfo {
                 .map_or((String::from("-"), String::from("-")), |m| (percent(m.rmse), percent(m.worst)));
             let _ = writeln!(
                 out,
-                "    {mip:<10} {:>6} {alpha:>13.5} {:>12} {:>12}",
+                "    {mip:<10} {:>6} {alpha:>13.5} {:>12} {:>12} {:>12}",
                 params.face_size >> mip,
                 error.0,
-                error.1
+                error.1,
+                measured.rounding.get(mip).map_or(String::from("-"), |rounding| percent(*rounding))
             );
         }
         out

@@ -1,6 +1,6 @@
 //! `glint-bake environment`: what it writes, says and refuses; what `glint-info` says of it.
 
-use crate::support::{bake, info, json, root};
+use crate::support::{Case, bake, info, json, root};
 use std::fs;
 use std::path::Path;
 
@@ -20,25 +20,27 @@ fn write_exr(path: &Path, width: usize, height: usize, pixel: impl Fn(usize, usi
     exr::prelude::write_rgb_file(path, width, height, pixel).unwrap();
 }
 
+const DEFAULT: [&str; 4] = ["environment", "sky.hdr", "-o", "out.glintpack"];
+const SMALL: [&str; 6] = ["environment", "sky.hdr", "-o", "out.glintpack", "--face-size", "16"];
+
 /// A grey sky with a sun 2^17 times as bright.
-fn sky(folder: &Path) {
-    write_hdr(&folder.join("sky.hdr"), 32, 16, |x, y| {
+fn sky(args: &'static [&'static str]) -> Case {
+    let case = Case { folder: tempfile::tempdir().unwrap(), args };
+    write_hdr(&case.path("sky.hdr"), 32, 16, |x, y| {
         if (x, y) == (20, 4) { [200, 180, 150, 145] } else { [100, 120, 140, 128] }
     });
+    case
 }
-
-const SMALL: [&str; 6] = ["environment", "sky.hdr", "-o", "out.glintpack", "--face-size", "16"];
 
 #[test]
 fn an_environment_verifies_and_is_described() {
-    let folder = tempfile::tempdir().unwrap();
-    sky(folder.path());
+    let case = sky(&SMALL);
     let flags = ["--levels", "8", "--coloured", "--json", "--report", "r.json", "--depfile", "out.d"];
-    let done = bake(folder.path(), &[&SMALL[..], &flags].concat()).ok();
+    let done = case.bake(&flags).ok();
     assert!(done.stderr.contains("sky: 16² × 6 × 2 mips") && done.stderr.contains("written"), "{}", done.stderr);
-    assert_eq!(info(folder.path(), &["out.glintpack", "--verify"]).ok().stdout, "out.glintpack: intact\n");
-    assert_eq!(fs::read_to_string(folder.path().join("r.json")).unwrap(), done.stdout);
-    assert!(fs::read_to_string(folder.path().join("out.d")).unwrap().contains("sky.hdr"));
+    case.verify();
+    assert_eq!(fs::read_to_string(case.path("r.json")).unwrap(), done.stdout);
+    assert!(fs::read_to_string(case.path("out.d")).unwrap().contains("sky.hdr"));
 
     let report = json(&done.stdout);
     let params = &report["environments"][0]["params"];
@@ -51,7 +53,7 @@ fn an_environment_verifies_and_is_described() {
     assert!(params["radiance_scale"].as_f64().unwrap() > 1.0);
     assert_eq!(report["provenance"][0]["method"], "environment");
 
-    let text = info(folder.path(), &["out.glintpack"]).ok().stdout;
+    let text = case.info(&[]).ok().stdout;
     for part in [
         "ENIN \"sky\"",
         "16 × 16 × 6 faces × 2 layers, 2 mips",
@@ -64,16 +66,9 @@ fn an_environment_verifies_and_is_described() {
 
 #[test]
 fn the_same_pack_on_any_number_of_threads_and_from_other_flags_another() {
-    let folder = tempfile::tempdir().unwrap();
-    sky(folder.path());
-    let pack_of = |flags: &[&str]| {
-        bake(folder.path(), &[&SMALL[..], flags].concat()).ok();
-        info(folder.path(), &["out.glintpack", "--verify"]).ok();
-        fs::read(folder.path().join("out.glintpack")).unwrap()
-    };
-    let one = pack_of(&["-j", "1"]);
-    assert!(one == pack_of(&["-j", "3"]));
-    assert!(bake(folder.path(), &SMALL).ok().stderr.contains("unchanged"));
+    let case = sky(&SMALL);
+    let one = case.same_on_any_threads();
+    assert!(case.bake(&[]).ok().stderr.contains("unchanged"));
     for flags in [
         &["--levels", "1"][..],
         &["--levels", "auto", "--max-moment-error", "0.5"],
@@ -83,7 +78,8 @@ fn the_same_pack_on_any_number_of_threads_and_from_other_flags_another() {
         &["--format", "f32", "--compress"],
         &["--min-face-size", "4", "--measure", "0", "--max-error", "0.02"],
     ] {
-        assert!(one != pack_of(flags), "{flags:?}");
+        assert!(one != case.pack(flags), "{flags:?}");
+        case.verify();
     }
 }
 
@@ -101,15 +97,13 @@ fn exr_is_read_and_negative_pixels_are_counted() {
 
 #[test]
 fn what_cannot_be_used_is_refused_with_its_reason() {
-    let folder = tempfile::tempdir().unwrap();
-    sky(folder.path());
-    let path = |name: &str| folder.path().join(name);
-    write_exr(&path("nan.exr"), 16, 8, |x, y| (1.0, if (x, y) == (5, 6) { f32::NAN } else { 1.0 }, 1.0));
-    write_exr(&path("inf.exr"), 16, 8, |x, y| (1.0, 1.0, if (x, y) == (15, 0) { f32::INFINITY } else { 1.0 }));
-    write_hdr(&path("square.hdr"), 16, 16, |_, _| [128; 4]);
-    let whole = fs::read(path("sky.hdr")).unwrap();
-    fs::write(path("cut.hdr"), &whole[..whole.len() - 100]).unwrap();
-    fs::write(path("text.hdr"), b"hello").unwrap();
+    let case = sky(&DEFAULT);
+    write_exr(&case.path("nan.exr"), 16, 8, |x, y| (1.0, if (x, y) == (5, 6) { f32::NAN } else { 1.0 }, 1.0));
+    write_exr(&case.path("inf.exr"), 16, 8, |x, y| (1.0, 1.0, if (x, y) == (15, 0) { f32::INFINITY } else { 1.0 }));
+    write_hdr(&case.path("square.hdr"), 16, 16, |_, _| [128; 4]);
+    let whole = fs::read(case.path("sky.hdr")).unwrap();
+    fs::write(case.path("cut.hdr"), &whole[..whole.len() - 100]).unwrap();
+    fs::write(case.path("text.hdr"), b"hello").unwrap();
     for (file, code, part) in [
         ("nan.exr", 4, "pixel (5, 6) has green NaN"),
         ("inf.exr", 4, "pixel (15, 0) has blue inf"),
@@ -118,7 +112,7 @@ fn what_cannot_be_used_is_refused_with_its_reason() {
         ("text.hdr", 5, "Radiance HDR or OpenEXR"),
         ("missing.hdr", 3, "cannot be read"),
     ] {
-        let refused = bake(folder.path(), &["environment", file, "-o", "out.glintpack"]);
+        let refused = bake(case.folder.path(), &["environment", file, "-o", "out.glintpack"]);
         assert_eq!(refused.code, code, "{file}: {}", refused.stderr);
         assert!(refused.stderr.contains(file) && refused.stderr.contains(part), "{file}: {}", refused.stderr);
     }
@@ -134,13 +128,11 @@ fn what_cannot_be_used_is_refused_with_its_reason() {
         (&["--levels", "1", "--coloured"], 2),
         (&["--max-memory", "64K"], 6),
     ] {
-        let refused = bake(folder.path(), &[&["environment", "sky.hdr", "-o", "out.glintpack"], flags].concat());
-        assert_eq!(refused.code, code, "{flags:?}: {}", refused.stderr);
-        assert!(refused.stderr.contains(flags[0]), "{flags:?}: {}", refused.stderr);
+        case.refuses(flags, code, flags[0]);
     }
-    let dry = bake(folder.path(), &[&SMALL[..], &["-n"]].concat()).ok();
+    let dry = case.bake(&["-n"]).ok();
     assert!(dry.stderr.contains("nothing was written"), "{}", dry.stderr);
-    assert!(!path("out.glintpack").exists());
+    assert!(!case.path("out.glintpack").exists());
 }
 
 /// Every image of the shared data, small faces; says so where there is none.

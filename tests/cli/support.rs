@@ -2,6 +2,7 @@
 
 use assert_cmd::Command;
 use glint_bake::input::synthetic;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What a program did.
@@ -56,4 +57,86 @@ pub fn root() -> PathBuf {
 #[track_caller]
 pub fn json(text: &str) -> serde_json::Value {
     serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text}"))
+}
+
+/// A subcommand in a folder of its own: the arguments that every call begins with write `out.glintpack`.
+pub struct Case {
+    pub folder: tempfile::TempDir,
+    pub args: &'static [&'static str],
+}
+
+impl Case {
+    /// Path of a file.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// Bakes with more flags.
+    pub fn bake(&self, flags: &[&str]) -> Outcome {
+        bake(self.folder.path(), &[self.args, flags].concat())
+    }
+
+    /// What glint-info says of the pack.
+    pub fn info(&self, flags: &[&str]) -> Outcome {
+        info(self.folder.path(), &[&["out.glintpack"], flags].concat())
+    }
+
+    /// Bytes of the pack that more flags make.
+    #[track_caller]
+    pub fn pack(&self, flags: &[&str]) -> Vec<u8> {
+        self.bake(flags).ok();
+        fs::read(self.path("out.glintpack")).unwrap()
+    }
+
+    /// Looks that the pack is intact.
+    #[track_caller]
+    pub fn verify(&self) {
+        assert_eq!(self.info(&["--verify"]).ok().stdout, "out.glintpack: intact\n");
+    }
+
+    /// The report of the pack.
+    #[track_caller]
+    pub fn report(&self) -> serde_json::Value {
+        json(&self.info(&["--json"]).ok().stdout)
+    }
+
+    /// Names of all files of the folder, sorted.
+    pub fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.folder.path()).unwrap();
+        let mut names: Vec<String> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    /// Looks that flags are refused with a code, by a message that holds `part`.
+    #[track_caller]
+    pub fn refuses(&self, flags: &[&str], code: i32, part: &str) {
+        let refused = self.bake(flags);
+        assert_eq!(refused.code, code, "{flags:?}: {}", refused.stderr);
+        assert!(refused.stderr.contains(part), "{flags:?}: {}", refused.stderr);
+    }
+
+    /// Looks that any number of threads makes the same pack; gives its bytes.
+    #[track_caller]
+    pub fn same_on_any_threads(&self) -> Vec<u8> {
+        let one = self.pack(&["-j", "1"]);
+        assert!(one == self.pack(&["-j", "2"]) && one == self.pack(&["-j", "7"]) && one == self.pack(&[]));
+        one
+    }
+
+    /// Looks that --json and --report give what glint-info prints, --depfile names `inputs`, and -q says nothing.
+    #[track_caller]
+    pub fn check_outputs(&self, inputs: &[&str]) {
+        let before = self.names();
+        let done = self.bake(&["--json", "--report", "r.json", "--depfile", "out.d", "-q"]).ok();
+        assert!(done.stderr.is_empty(), "{}", done.stderr);
+        let printed = self.info(&["--json"]).ok().stdout;
+        assert_eq!(done.stdout, printed);
+        assert_eq!(fs::read_to_string(self.path("r.json")).unwrap(), printed);
+        let inputs: String = inputs.iter().map(|name| format!(" \\\n  {name}")).collect();
+        assert_eq!(fs::read_to_string(self.path("out.d")).unwrap(), format!("out.glintpack:{inputs}\n"));
+        let mut after = [&before[..], &["out.d", "out.glintpack", "r.json"].map(String::from)].concat();
+        after.sort();
+        assert_eq!(self.names(), after);
+    }
 }

@@ -16,6 +16,7 @@ pub fn data() -> Option<PathBuf> {
 }
 
 /// A map of the data folder, or a square crop of it: left, top, edge.
+#[allow(dead_code)] // Tests of environments read no normal maps.
 pub fn load(data: &Path, name: &str, crop: Option<(u32, u32, u32)>) -> NormalMap {
     let crop = crop.map(|(x, y, edge)| Crop { x, y, w: edge, h: edge });
     let options = InputOptions { crop, assume_linear: true, ..InputOptions::default() };

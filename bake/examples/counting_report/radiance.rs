@@ -1,7 +1,7 @@
 //! Mean and variance of Σ L_k n_k, the radiance of glints, for K log-uniform levels: ours and the paper's tree against
 //! the multinomial's own moments.
 
-use glint_bake_core::counting::{MAX_LEVELS, multinomial, paper};
+use glint_bake_core::counting::{Count, MAX_LEVELS, multinomial, paper};
 use glint_bake_core::rng::ItemRng;
 use std::time::Instant;
 
@@ -48,7 +48,7 @@ pub fn table() {
                 for _ in 0..draws {
                     let counts = if ours {
                         let bits: [u32; MAX_LEVELS] = std::array::from_fn(|_| rng.bits());
-                        multinomial(n, &weight, count, &bits)
+                        multinomial(n, &weight, count, &bits).map(Count::value)
                     } else {
                         let bits: [u32; 2 * MAX_LEVELS] = std::array::from_fn(|_| rng.bits());
                         paper::multinomial(n, &weight, count, &bits)
@@ -82,7 +82,7 @@ pub fn table() {
 }
 
 /// Least nanoseconds a draw over passes.
-fn nanoseconds(draw: impl Fn(&[u32; 2 * MAX_LEVELS]) -> [f32; MAX_LEVELS]) -> f64 {
+fn nanoseconds<C>(draw: impl Fn(&[u32; 2 * MAX_LEVELS]) -> [C; MAX_LEVELS]) -> f64 {
     let mut rng = ItemRng::new(5, 3, 0);
     let words: Vec<[u32; 2 * MAX_LEVELS]> = (0..1024).map(|_| std::array::from_fn(|_| rng.bits())).collect();
     let mut least = f64::MAX;

@@ -3,10 +3,10 @@
 
 use glint_bake_core::counting::binomial::{binomial, whole_count};
 use glint_bake_core::counting::normal::{normal_upper_quantile, unit_from_bits};
-use glint_bake_core::counting::{one_minus_pow1m, paper, pow1m};
+use glint_bake_core::counting::{Count, one_minus_pow1m, paper, pow1m};
 
 /// Hits and misses of n trials with chance p, q = 1 − p, from two words.
-pub type Draw = fn(f32, f32, f32, [u32; 2]) -> [f32; 2];
+pub type Draw = fn(f32, f32, f32, [u32; 2]) -> [Count; 2];
 
 /// One row of the front.
 pub struct Variant {
@@ -22,7 +22,7 @@ pub struct Variant {
 pub fn variants() -> Vec<Variant> {
     let row = |name, draw, whole| Variant { name, draw, whole };
     vec![
-        row("paper", |n, p, _, bits| paper::binomial(n, p, bits), false),
+        row("paper", |n, p, _, bits| paper::binomial(n, p, bits).map(Count::from), false),
         row("**ours**", binomial, true),
         row("paper's gates, stable powers", gated::<0>, false),
         row("… and the Gaussian moved to the right mean", gated::<1>, false),
@@ -78,7 +78,7 @@ fn expansion(n: f32, p: f32, q: f32, u: f32, order: u32) -> f32 {
 
 /// Walk where at most `FEW` of the rarer outcome are expected, expansion to `ORDER` beyond; `BOTH` computes both each
 /// time, as lanes of a GPU do when their neighbours go the other way.
-fn switched<const FEW: u32, const ORDER: u32, const BOTH: bool>(n: f32, p: f32, q: f32, bits: [u32; 2]) -> [f32; 2] {
+fn switched<const FEW: u32, const ORDER: u32, const BOTH: bool>(n: f32, p: f32, q: f32, bits: [u32; 2]) -> [Count; 2] {
     let n = whole_count(n, bits[0]);
     let swapped = p > q;
     let (rare, common) = if swapped { (q, p) } else { (p, q) };
@@ -96,7 +96,7 @@ fn switched<const FEW: u32, const ORDER: u32, const BOTH: bool>(n: f32, p: f32, 
     } else {
         expansion(n, rare, common, u, ORDER)
     };
-    if swapped { [n - hits, hits] } else { [hits, n - hits] }
+    (if swapped { [n - hits, hits] } else { [hits, n - hits] }).map(Count::from)
 }
 
 /// φ(x).
@@ -131,12 +131,16 @@ fn moved_gaussian(mean: f32, sigma: f32, lo: f32, hi: f32, wanted: f32, z: f32) 
 /// Gates as in the paper with powers that hold, on the rarer outcome. `KIND` 0: the paper's Gaussian; 1: moved to the
 /// mean that E[n] = Np asks for; 2: from N = 4 on, gates for one hit and one miss too, and a Gaussian of the rest's
 /// mean and variance, moved.
-fn gated<const KIND: u32>(n: f32, p: f32, q: f32, bits: [u32; 2]) -> [f32; 2] {
+fn gated<const KIND: u32>(n: f32, p: f32, q: f32, bits: [u32; 2]) -> [Count; 2] {
+    gated_counts::<KIND>(n, p, q, bits).map(Count::from)
+}
+
+fn gated_counts<const KIND: u32>(n: f32, p: f32, q: f32, bits: [u32; 2]) -> [f32; 2] {
     if n <= 2.0 {
         return paper::binomial(n, p, bits);
     }
     if p > q {
-        let [misses, hits] = gated::<KIND>(n, q, p, [!bits[0], !bits[1]]);
+        let [misses, hits] = gated_counts::<KIND>(n, q, p, [!bits[0], !bits[1]]);
         return [hits, misses];
     }
     let gate = unit_from_bits(bits[0]);

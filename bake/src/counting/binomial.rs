@@ -13,12 +13,17 @@
 //!   it is above, where counts are fractional. Here the mixture is the definition for all N: N facets are ⌊N⌋ facets
 //!   and one more with probability N − ⌊N⌋. n + n̄ is that whole number; it is N where N is whole, as all f32 from 2²³
 //!   on are.
+//! - Counts above 2²⁴ come with what rounding to f32 takes from them ([`Count`]), so that their variance holds to 1e16.
 
+use super::count::Count;
 use super::normal::{normal_upper_quantile, unit_from_bits};
 use super::pow1m::{one_minus_pow1m, pow1m};
 
 /// Largest expected count of the rarer outcome that is drawn exactly.
 pub const FEW: f32 = 6.0;
+
+/// From here on every f32 is a whole number.
+const WHOLE: f32 = 8_388_608.0;
 
 /// Steps of the walk: more hits happen in 1.5 of 10⁶ draws when [`FEW`] are expected, and count as this many.
 pub const WALK_STEPS: u32 = 20;
@@ -60,28 +65,33 @@ fn product_rest(a: f32, b: f32, product: f32) -> f32 {
 ///
 /// With z the normal quantile, σ² = npq, γ = q − p:
 /// np + σz + γ(z² − 1)/6 + z [(1 − 6pq)(z² − 3)/24 − γ²(2z² − 5)/36 − 1/24] / σ, to the nearest whole number.
-pub fn many_hits(n: f32, p: f32, q: f32, u: f32) -> f32 {
-    let mean = n * p;
-    let sigma = (mean * q).sqrt();
+pub fn many_hits(n: Count, p: f32, q: f32, u: f32) -> Count {
+    let mean = n.high * p;
+    // From np = 4e8 on, the rounding of np alone would show as a bias in ten million draws.
+    let rest = product_rest(n.high, p, mean) + n.low * p;
+    let sigma = ((mean + rest) * q).sqrt();
     let z = normal_upper_quantile(u);
     let skew = q - p;
     let z2 = z * z;
     let third = (1.0 - 6.0 * p * q) * (z2 - 3.0) * (1.0 / 24.0) - skew * skew * (2.0 * z2 - 5.0) * (1.0 / 36.0);
     let spread = sigma * z + skew * (z2 - 1.0) * (1.0 / 6.0) + z * (third - 1.0 / 24.0) / sigma;
-    // From np = 4e8 on, the rounding of np alone would show as a bias in ten million draws.
-    let hits = mean + (product_rest(n, p, mean) + spread);
-    hits.round_ties_even().clamp(0.0, n)
+    if mean < WHOLE {
+        return Count::from((mean + (rest + spread)).round_ties_even().clamp(0.0, n.value()));
+    }
+    // The mean is a whole number here, hundreds of σ from 0 and n; added to it in f32, the spread would be lost.
+    Count::new(mean, (rest + spread).round_ties_even())
 }
 
 /// Hits and misses of `n` trials with hit chance `p`, from one random word; they add up to `n`.
 ///
-/// `n` ≥ 0 is whole (to 1e16), `p` and `q` = 1 − p are from 0 to 1 (to 1e-16). For equal `bits` the hits grow with
-/// `p`, and exchanging p with q and `bits` with `!bits` exchanges the result. Counts above 2²⁴ are rounded to f32.
-pub fn whole_binomial(n: f32, p: f32, q: f32, bits: u32) -> [f32; 2] {
+/// `n` ≥ 0 is at most 1e16, `p` and `q` = 1 − p are from 0 to 1 (to 1e-16). For equal `bits` the hits grow with
+/// `p`, and exchanging p with q and `bits` with `!bits` exchanges the result.
+pub fn whole_binomial(n: Count, p: f32, q: f32, bits: u32) -> [Count; 2] {
     let swapped = p > q;
     let (rare, common) = if swapped { (q, p) } else { (p, q) };
     let u = unit_from_bits(if swapped { !bits } else { bits });
-    let hits = if n * rare <= FEW { few_hits(n, rare, common, u) } else { many_hits(n, rare, common, u) };
+    let few = n.value() * rare <= FEW;
+    let hits = if few { few_hits(n.value(), rare, common, u).into() } else { many_hits(n, rare, common, u) };
     if swapped { [n - hits, hits] } else { [hits, n - hits] }
 }
 
@@ -89,6 +99,6 @@ pub fn whole_binomial(n: f32, p: f32, q: f32, bits: u32) -> [f32; 2] {
 /// the second draws ([`whole_binomial`]).
 ///
 /// Hits have mean np and variance npq + λ(1 − λ)p², λ = n − ⌊n⌋; they and the misses add up to the whole number.
-pub fn binomial(n: f32, p: f32, q: f32, bits: [u32; 2]) -> [f32; 2] {
-    whole_binomial(whole_count(n, bits[0]), p, q, bits[1])
+pub fn binomial(n: f32, p: f32, q: f32, bits: [u32; 2]) -> [Count; 2] {
+    whole_binomial(whole_count(n, bits[0]).into(), p, q, bits[1])
 }

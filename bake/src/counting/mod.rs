@@ -11,9 +11,11 @@
 //! What deviates from the paper, and why, stands on top of each file and in `docs/METHODS.md`. The main points:
 //! - counts are whole numbers, their mean is Np, and their variance that of the binomial distribution;
 //! - one random word a binomial draw instead of two numbers, and counts change monotonously with p for a fixed word;
+//! - counts above 2²⁴ come with what rounding to f32 takes from them ([`Count`]): their variance holds to N = 1e16;
 //! - a fractional N is a random whole number with mean N, rounded once at the root of the tree and never below it.
 
 pub mod binomial;
+pub mod count;
 pub mod multinomial;
 pub mod normal;
 pub mod paper;
@@ -23,5 +25,6 @@ pub mod reference;
 pub mod wgsl;
 
 pub use binomial::{binomial, whole_binomial};
+pub use count::Count;
 pub use multinomial::{MAX_LEVELS, multinomial};
 pub use pow1m::{one_minus_pow1m, pow1m};

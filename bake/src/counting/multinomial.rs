@@ -7,6 +7,7 @@
 //!   either side.
 
 use super::binomial::{whole_binomial, whole_count};
+use super::count::Count;
 
 /// Most levels of one draw.
 pub const MAX_LEVELS: usize = 16;
@@ -23,8 +24,14 @@ pub fn tree_leaves(levels: usize) -> usize {
 /// The first `levels` (1 to 16) weights count; they are finite, ≥ 0, and need not add up to 1. A level of weight 0 gets
 /// no facet; if all are 0, level 0 gets them. Word 0 of `bits` makes `n` whole, words 1 to [`tree_leaves`] − 1 draw:
 /// node i has the children 2i and 2i + 1. Whole counts come back that add up to a whole number with mean `n` (`n`
-/// itself where it is whole; above 2²⁴ each is rounded to f32).
-pub fn multinomial(n: f32, weights: &[f32; MAX_LEVELS], levels: usize, bits: &[u32; MAX_LEVELS]) -> [f32; MAX_LEVELS] {
+/// itself where it is whole). Chances are quotients of f32 sums of weights: they are off by about 1e-7 of themselves,
+/// which is a shift of the mean that exceeds the standard deviation of counts above 1e14.
+pub fn multinomial(
+    n: f32,
+    weights: &[f32; MAX_LEVELS],
+    levels: usize,
+    bits: &[u32; MAX_LEVELS],
+) -> [Count; MAX_LEVELS] {
     let leaves = tree_leaves(levels);
     let mut weight = [0.0f32; 2 * MAX_LEVELS];
     for i in 0..levels.min(MAX_LEVELS) {
@@ -33,20 +40,20 @@ pub fn multinomial(n: f32, weights: &[f32; MAX_LEVELS], levels: usize, bits: &[u
     for node in (1..leaves).rev() {
         weight[node] = weight[2 * node] + weight[2 * node + 1];
     }
-    let mut count = [0.0f32; 2 * MAX_LEVELS];
-    count[1] = whole_count(n, bits[0]);
+    let mut count = [Count::default(); 2 * MAX_LEVELS];
+    count[1] = whole_count(n, bits[0]).into();
     for node in 1..leaves {
         let (left, right) = (weight[2 * node], weight[2 * node + 1]);
         // An empty right branch needs no draw, and division by an empty node would be undefined.
-        let split = if right > 0.0 && count[node] > 0.0 {
+        let split = if right > 0.0 && count[node].high > 0.0 {
             whole_binomial(count[node], left / weight[node], right / weight[node], bits[node])
         } else {
-            [count[node], 0.0]
+            [count[node], Count::default()]
         };
         count[2 * node] = split[0];
         count[2 * node + 1] = split[1];
     }
-    let mut counts = [0.0; MAX_LEVELS];
+    let mut counts = [Count::default(); MAX_LEVELS];
     counts[..leaves].copy_from_slice(&count[leaves..2 * leaves]);
     counts
 }

@@ -5,6 +5,7 @@
 //! the middles of equal shares. Mean, variance and Wasserstein distance of the very f32 code follow without the
 //! noise of random draws.
 
+use super::count::Count;
 use super::reference::ExactBinomial;
 
 /// One outcome of a draw.
@@ -29,7 +30,7 @@ pub enum SecondWord {
 
 /// Words and how many of them up to the next change of `value`, over all 2³² words; `value` must not return to what it
 /// left.
-fn constant_runs(value: &impl Fn(u32) -> [f32; 2]) -> Vec<([f32; 2], u64)> {
+fn constant_runs(value: &impl Fn(u32) -> [f64; 2]) -> Vec<([f64; 2], u64)> {
     let mut runs = Vec::new();
     let (mut start, end) = (0u64, 1u64 << 32);
     let last = value(u32::MAX);
@@ -51,16 +52,17 @@ fn constant_runs(value: &impl Fn(u32) -> [f32; 2]) -> Vec<([f32; 2], u64)> {
 }
 
 /// All outcomes of `draw`, whose hits must not grow with the first word.
-pub fn outcomes(draw: impl Fn([u32; 2]) -> [f32; 2], second: SecondWord) -> Vec<Outcome> {
+pub fn outcomes(draw: impl Fn([u32; 2]) -> [Count; 2], second: SecondWord) -> Vec<Outcome> {
+    let draw = |bits| draw(bits).map(f64::from);
     let whole = (1u64 << 32) as f64;
     let mut all = Vec::new();
     let mut start = 0u64;
     for (_, words) in constant_runs(&|word| draw([word, 1 << 31])) {
         let first = (start + words / 2) as u32;
         start += words;
-        let mut push = |[hits, misses]: [f32; 2], share: f64| {
+        let mut push = |[hits, misses]: [f64; 2], share: f64| {
             let weight = share * words as f64 / whole;
-            all.push(Outcome { hits: f64::from(hits), misses: f64::from(misses), weight });
+            all.push(Outcome { hits, misses, weight });
         };
         match second {
             SecondWord::Bisected => {
@@ -79,7 +81,7 @@ pub fn outcomes(draw: impl Fn([u32; 2]) -> [f32; 2], second: SecondWord) -> Vec<
     all
 }
 
-/// What a draw is measured by, on the rarer of its two outcomes: of N = 1e16 trials, f32 holds 3 misses but not N − 3
+/// What a draw is measured by, on the rarer of its two outcomes: of N = 1e16 trials, f64 holds 3 misses but not N − 3
 /// hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CountingQuality {

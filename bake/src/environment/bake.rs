@@ -8,20 +8,16 @@ use super::image::{EnvironmentImage, luminance};
 use super::kernel::{Lobe, roughness_of_mips};
 use super::levels::{Seen, fewest, log_uniform, optimal, shares};
 use super::options::{EnvironmentOptions, LevelCount};
-use super::prefilter::{OF_SHARP, SHARP, filter_mip};
+use super::prefilter::filter_mip;
 use super::quality;
 use super::quantise;
+use super::scale::{Mip, radiance_scale, rounding_error};
 use super::tables::Environment;
 use super::tree::{BASE_CHANNELS, Tree};
 use crate::error::{BakeError, Result};
 use crate::progress::Progress;
 use glint_formats::environment::{EnvironmentParams, LevelChoice, MeasuredError, Storage};
 use half::f16;
-
-/// Largest stored radiance whose neighbours are still finite half floats.
-const MAX_STORED: f64 = 32768.0;
-/// Images whose brightest pixel is below this are scaled up, so that half floats keep their digits.
-const DIM: f64 = 1.0 / 64.0;
 
 /// Bakes `image`, of which `negative_pixels` were mended.
 ///
@@ -40,7 +36,7 @@ pub fn bake(
         kernel: options.kernel,
         storage: options.storage,
         roughness: roughness_of_mips(options.mips()),
-        radiance_scale: radiance_scale(image, options.storage),
+        radiance_scale: 1.0,
         coloured: options.coloured,
         levels,
         level_choice: options.level_choice,
@@ -55,6 +51,7 @@ pub fn bake(
     let mut environment =
         Environment { params, radiance: Vec::new(), indicators: Vec::new(), colours: Vec::new(), albedo: Vec::new() };
     let mips = filtered_mips(image, options, &environment.params, progress);
+    choose_scale(image, &mips, &mut environment.params);
     round(&mips, &mut environment);
     environment.params.measured.energy = energy_error(image, &mips.texels[0], mips.channels);
     drop(mips);
@@ -83,22 +80,24 @@ fn choose_levels(image: &EnvironmentImage, options: &EnvironmentOptions) -> (Vec
     }
 }
 
-/// The power of two that brings radiance into the range of half floats; 1 where it is there already.
-fn radiance_scale(image: &EnvironmentImage, storage: Storage) -> f64 {
-    let brightest = image.pixels.iter().flatten().fold(0.0f32, |a, b| a.max(*b));
-    let brightest = f64::from(brightest);
-    if storage == Storage::F32 || brightest == 0.0 || (DIM..=MAX_STORED).contains(&brightest) {
-        return 1.0;
-    }
-    libm::exp2(libm::ceil(libm::log2(brightest / MAX_STORED)))
-}
-
 /// All mips before rounding.
 struct Mips {
     /// Numbers a texel: red, green, blue, squared luminance, indicators of levels from 1 on, their light by colour.
     channels: usize,
     /// One entry a mip.
     texels: Vec<Vec<f64>>,
+}
+
+/// Sets the factor between stored and true radiance, and records what rounding then costs.
+fn choose_scale(image: &EnvironmentImage, mips: &Mips, params: &mut EnvironmentParams) {
+    let channels = mips.channels;
+    let of = |(mip, texels)| Mip { texels, channels, max_error: quality::allowed_error(params, mip) };
+    let all: Vec<Mip<'_>> = mips.texels.iter().map(Vec::as_slice).enumerate().map(of).collect();
+    let scale = radiance_scale(image, &all, params.storage);
+    let mean = luminance(image.mean());
+    let error = |mip: &Mip<'_>| if mean > 0.0 { rounding_error(mip, scale, params.storage) / mean } else { 0.0 };
+    params.measured.rounding = all.iter().map(error).collect();
+    params.radiance_scale = scale;
 }
 
 fn filtered_mips(
@@ -223,14 +222,12 @@ fn unit_luminance(rgb: [f64; 3]) -> [f64; 3] {
 fn check_error(environment: &Environment) -> Result<()> {
     let params = &environment.params;
     for (mip, measured) in params.measured.mips.iter().enumerate().skip(1) {
-        let alpha = params.roughness[mip];
-        let of_filter = params.max_error * if alpha < SHARP { OF_SHARP } else { 1.0 };
-        let most = of_filter.hypot(quality::rounding_floor(environment, mip as u32));
+        let most = quality::allowed_error(params, mip).hypot(params.measured.rounding[mip]);
         if measured.rmse > most {
             return Err(BakeError::LimitExceeded(format!(
-                "mip {mip} (α {alpha:.4}): expected a root mean square error of {most:.5} of the mean at most, found {:.5}; \
+                "mip {mip} (α {:.4}): expected a root mean square error of {most:.5} of the mean at most, found {:.5}; \
                  raise --max-error",
-                measured.rmse
+                params.roughness[mip], measured.rmse
             )));
         }
     }

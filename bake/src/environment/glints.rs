@@ -12,7 +12,7 @@ use super::eval::{
     spread_factor,
 };
 use super::tables::Environment;
-use crate::counting::multinomial::multinomial;
+use crate::counting::{Count, multinomial};
 use glam::Vec3;
 use glint_formats::environment::MAX_LEVELS;
 
@@ -99,12 +99,11 @@ fn level_counts(
     bits: &[u32; MAX_LEVELS],
 ) -> [f32; MAX_LEVELS] {
     let levels = environment.params.levels.len();
-    if levels > 1 {
-        return multinomial(facets, &chances.p, levels, bits);
-    }
     let mut p = chances.p;
-    p[1] = 1.0 - p[0];
-    multinomial(facets, &p, 2, bits)
+    if levels == 1 {
+        p[1] = 1.0 - p[0];
+    }
+    multinomial(facets, &p, levels.max(2), bits).map(Count::value)
 }
 
 /// Drawn over expected light, channel by channel.

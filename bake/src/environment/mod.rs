@@ -29,6 +29,7 @@ pub mod quality;
 pub mod quantise;
 pub mod reference;
 pub mod reference_glints;
+pub mod scale;
 pub mod sections;
 pub mod tables;
 pub mod tree;

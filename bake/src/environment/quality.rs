@@ -6,19 +6,18 @@
 
 use super::cube::texel_direction;
 use super::image::{EnvironmentImage, luminance};
+use super::prefilter::{OF_SHARP, SHARP};
 use super::reference::{Filtered, filtered, texel_mean};
 use super::tables::Environment;
 use crate::progress::Progress;
 use crate::rng::ItemRng;
-use glint_formats::environment::{MeasuredMip, Storage};
+use glint_formats::environment::{EnvironmentParams, MeasuredMip};
 use rayon::prelude::*;
 
 /// Purpose of the random numbers that choose texels.
 const PURPOSE: u32 = 30;
 /// Images of fewer columns have their pixels divided, so that the reference has not to divide them everywhere.
 const FINE_WIDTH: u32 = 256;
-/// Largest relative error of rounding to a half float.
-const HALF_ULP: f64 = 1.0 / 2048.0;
 /// Lines over a texel of the first mip.
 const ROWS: u32 = 512;
 
@@ -104,6 +103,11 @@ fn chosen(below: &[f64], mip: u32, k: u32) -> (u32, f64) {
     (index as u32, 1.0 / (0.5 + 0.5 * share * all as f64))
 }
 
+/// Root mean square error over the mean that a mip may have.
+pub fn allowed_error(params: &EnvironmentParams, mip: usize) -> f64 {
+    params.max_error * if params.roughness[mip] < SHARP { OF_SHARP } else { 1.0 }
+}
+
 /// Error of compared texels. `mean` is the mean luminance of the mip.
 pub fn error_of(compared: &[Compared], mean: f64) -> MeasuredMip {
     if compared.is_empty() || mean <= 0.0 {
@@ -112,22 +116,6 @@ pub fn error_of(compared: &[Compared], mean: f64) -> MeasuredMip {
     let squares: f64 = compared.iter().map(|c| c.weight * c.error().powi(2)).sum();
     let shares = compared.iter().map(|c| c.error().abs() / c.exact.luminance.max(1e-12 * mean));
     MeasuredMip { rmse: (squares / compared.len() as f64).sqrt() / mean, worst: shares.fold(0.0, f64::max) }
-}
-
-/// Largest root mean square error that rounding to half floats alone makes, over the mean luminance of a mip. Next to a
-/// sun this is what is left of the error.
-pub fn rounding_floor(environment: &Environment, mip: u32) -> f64 {
-    let size = environment.size(mip);
-    let mean = luminance(environment.params.mean_radiance);
-    if environment.params.storage == Storage::F32 || mean <= 0.0 {
-        return 0.0;
-    }
-    let texels = 6 * size * size;
-    let squares: f64 = (0..texels)
-        .map(|k| environment.radiance_texel(mip, (k / (size * size)) as usize, k % size, k / size % size))
-        .map(|t| luminance([0, 1, 2].map(|c| f64::from(t[c]))).powi(2))
-        .sum();
-    HALF_ULP * (squares / f64::from(texels)).sqrt() / mean
 }
 
 /// Measures every mip by up to `count` texels and records it.

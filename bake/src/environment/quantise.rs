@@ -11,11 +11,22 @@ use half::f16;
 /// Bytes of a radiance texel: R, G, B and root mean square luminance, each over `scale`.
 pub fn radiance(texel: [f64; 4], scale: f64, storage: Storage, out: &mut Vec<u8>) {
     for value in texel {
-        let value = (value / scale) as f32;
         match storage {
-            Storage::F32 => out.extend(value.to_le_bytes()),
-            Storage::F16 | Storage::Unorm16 => out.extend(f16::from_f32(value.min(65504.0)).to_le_bytes()),
+            Storage::F32 => out.extend(((value / scale) as f32).to_le_bytes()),
+            Storage::F16 | Storage::Unorm16 => out.extend(half(value / scale).to_le_bytes()),
         }
+    }
+}
+
+fn half(value: f64) -> f16 {
+    f16::from_f32((value as f32).min(65504.0))
+}
+
+/// What a GPU reads of a radiance over its scale.
+pub fn stored(value: f64, storage: Storage) -> f64 {
+    match storage {
+        Storage::F32 => f64::from(value as f32),
+        Storage::F16 | Storage::Unorm16 => half(value).to_f64(),
     }
 }
 

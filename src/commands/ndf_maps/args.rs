@@ -1,11 +1,10 @@
 //! Flags of `glint-bake ndf-maps`.
 
 use crate::cli::{RunFlags, values};
-use crate::input::{Channels, Crop};
+use crate::commands::normal_maps::InputFlags;
 use clap::ValueEnum;
 use glint_bake_core::ndf_maps::transform::TransformRanges;
-use glint_bake_core::normal_map::GreenAxis;
-use glint_formats::ndf_maps::{DensityStorage, Wrap};
+use glint_formats::ndf_maps::DensityStorage;
 use std::path::PathBuf;
 
 /// Bake multi-scale NDF maps of small normal maps
@@ -41,24 +40,9 @@ pub struct Args {
     #[arg(long, help_heading = "Bake")]
     pub compress: bool,
 
-    /// Use only this part of each map
-    #[arg(long, value_name = "WxH+X+Y", value_parser = values::crop, help_heading = "Input")]
-    pub crop: Option<Crop>,
-    /// Which way green points: up (OpenGL) or down (DirectX)
-    #[arg(long, value_name = "AXIS", default_value = "up", help_heading = "Input")]
-    pub normal_y: NormalY,
-    /// What lies beyond a map's edge
-    #[arg(long, value_name = "WRAP", default_value = "repeat", help_heading = "Input")]
-    pub wrap: WrapArg,
-    /// Channels that hold the normal; xy computes z
-    #[arg(long, value_name = "CHANNELS", default_value = "xyz", help_heading = "Input")]
-    pub channels: ChannelsArg,
-    /// Read height maps; SCALE is the height of white in texels
-    #[arg(long, value_name = "SCALE", value_parser = values::non_zero, allow_negative_numbers = true, help_heading = "Input")]
-    pub height: Option<f32>,
-    /// Take the values of files tagged as sRGB as they are
-    #[arg(long, help_heading = "Input")]
-    pub assume_linear: bool,
+    /// How the maps are read.
+    #[command(flatten)]
+    pub input: InputFlags,
 
     /// How a surface is covered: copies side by side, or placed at random
     #[arg(long, value_name = "KIND", default_value = "tiled", help_heading = "Placement")]
@@ -124,63 +108,12 @@ pub enum Storage {
     Paper,
 }
 
-/// Which way green points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-#[allow(missing_docs)] // The flag's help says it.
-pub enum NormalY {
-    Up,
-    Down,
-}
-
-/// What lies beyond the edge.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-#[allow(missing_docs)] // The flag's help says it.
-pub enum WrapArg {
-    Repeat,
-    Clamp,
-}
-
-/// Which channels hold the normal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-#[allow(missing_docs)] // The flag's help says it.
-pub enum ChannelsArg {
-    Xyz,
-    Xy,
-}
-
 /// How a surface is covered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 #[allow(missing_docs)] // The flag's help says it.
 pub enum PlacementArg {
     Tiled,
     Stochastic,
-}
-
-impl From<NormalY> for GreenAxis {
-    fn from(axis: NormalY) -> GreenAxis {
-        match axis {
-            NormalY::Up => GreenAxis::Up,
-            NormalY::Down => GreenAxis::Down,
-        }
-    }
-}
-
-impl From<WrapArg> for Wrap {
-    fn from(wrap: WrapArg) -> Wrap {
-        match wrap {
-            WrapArg::Repeat => Wrap::Repeat,
-            WrapArg::Clamp => Wrap::Clamp,
-        }
-    }
-}
-
-impl From<ChannelsArg> for Channels {
-    fn from(channels: ChannelsArg) -> Channels {
-        match channels {
-            ChannelsArg::Xyz => Channels::Xyz,
-            ChannelsArg::Xy => Channels::Xy,
-        }
-    }
 }
 
 impl Args {

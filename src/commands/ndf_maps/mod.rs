@@ -4,8 +4,7 @@ mod args;
 mod plan;
 mod summary;
 
-pub use args::{Args, ChannelsArg, NormalY, WrapArg};
-pub(super) use plan::{digest, unique_name};
+pub use args::Args;
 
 use crate::cli::Terminal;
 use crate::exit::Failure;

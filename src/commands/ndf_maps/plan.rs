@@ -2,8 +2,9 @@
 
 use super::args::{Args, PlacementArg};
 use crate::commands::deliver::Delivery;
+use crate::commands::normal_maps::{check_name, digest, unique_name};
 use crate::exit::{Exit, Failure};
-use crate::input::{InputOptions, LoadedMap, load_normal_map};
+use crate::input::{LoadedMap, load_normal_map};
 use crate::pack;
 use glint_bake_core::ndf_maps::bake::{NdfMapsOptions, ROUGHNESS_RANGE, WORST_OF_MEAN};
 use glint_bake_core::ndf_maps::eval::Material;
@@ -12,7 +13,7 @@ use glint_formats::Codec;
 use glint_formats::container::MAX_NAME_BYTES;
 use glint_formats::ndf_maps::LayeredMaterial;
 use glint_formats::provenance::{InputDigest, Provenance};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// One map that becomes one material.
 pub struct Source {
@@ -48,7 +49,7 @@ impl Plan {
         let names = names(&args)?;
         let layers = args.layers.as_ref().map(|text| layers(text, &names, &args)).transpose()?;
         delivery(&args).check()?;
-        let input = input_options(&args);
+        let input = args.input.options(args.run.max_memory);
         let mut sources = Vec::new();
         for (path, name) in args.maps.iter().zip(names) {
             let loaded = load_normal_map(path, &input)?;
@@ -92,26 +93,14 @@ impl Plan {
     /// Where the pack comes from. Flags that do not change its bytes are left out.
     pub fn provenance(&self) -> Provenance {
         let args = &self.args;
-        let debug = |value: &dyn std::fmt::Debug| format!("{value:?}").to_ascii_lowercase();
         let mut options = vec![
             ("roughness", args.roughness.to_string()),
             ("max-error", self.bake.max_error.to_string()),
             ("storage", pack::storage_name(self.bake.storage).to_owned()),
-            ("normal-y", debug(&args.normal_y)),
-            ("wrap", debug(&args.wrap)),
-            ("channels", debug(&args.channels)),
-            ("placement", debug(&args.placement)),
-            ("transforms", pack::transforms_text(pack::ranges(&self.placement))),
         ];
-        if let Some(c) = args.crop {
-            options.push(("crop", format!("{}x{}+{}+{}", c.w, c.h, c.x, c.y)));
-        }
-        if let Some(scale) = args.height {
-            options.push(("height", scale.to_string()));
-        }
-        if args.assume_linear {
-            options.push(("assume-linear", "true".into()));
-        }
+        options.extend(args.input.provenance());
+        options.push(("placement", format!("{:?}", args.placement).to_ascii_lowercase()));
+        options.push(("transforms", pack::transforms_text(pack::ranges(&self.placement))));
         if args.placement == PlacementArg::Stochastic {
             options.push(("palette", args.palette.to_string()));
             options.push(("cells", args.cells.to_string()));
@@ -122,7 +111,7 @@ impl Plan {
             options: options.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
             seed: args.seed,
             inputs: self.sources.iter().map(|source| source.digest.clone()).collect(),
-            normal_convention: format!("y-{}", debug(&args.normal_y)),
+            normal_convention: args.input.normal_convention(),
             notes: self.sources.iter().flat_map(|s| s.loaded.warnings.iter().map(|w| remark(s, w))).collect(),
             ..pack::provenance("ndf-maps")
         }
@@ -166,18 +155,6 @@ fn placement_options(args: &Args) -> Result<PlacementOptions, Failure> {
     }))
 }
 
-fn input_options(args: &Args) -> InputOptions {
-    InputOptions {
-        y: args.normal_y.into(),
-        wrap: args.wrap.into(),
-        channels: args.channels.into(),
-        height: args.height,
-        crop: args.crop,
-        assume_linear: args.assume_linear,
-        max_memory: args.run.max_memory,
-    }
-}
-
 /// One name a map: those given, then file stems made unique by a number.
 fn names(args: &Args) -> Result<Vec<String>, Failure> {
     if args.name.len() > args.maps.len() {
@@ -186,11 +163,7 @@ fn names(args: &Args) -> Result<Vec<String>, Failure> {
     }
     let mut names: Vec<String> = Vec::new();
     for name in &args.name {
-        if name.is_empty() || name.len() > MAX_NAME_BYTES || name.chars().any(char::is_control) {
-            return Err(Failure::usage(format!(
-                "--name: expected 1 to {MAX_NAME_BYTES} bytes without control characters, found {name:?}"
-            )));
-        }
+        check_name(name)?;
         if names.contains(name) {
             return Err(Failure::usage(format!(
                 "--name: {name:?} is given twice; give each material a name of its own"
@@ -202,28 +175,6 @@ fn names(args: &Args) -> Result<Vec<String>, Failure> {
         names.push(unique_name(path, &names));
     }
     Ok(names)
-}
-
-/// The stem of a file's name, with a number when that is taken.
-pub(crate) fn unique_name(path: &Path, taken: &[String]) -> String {
-    let stem: String = path.file_stem().unwrap_or_default().to_string_lossy().chars().collect();
-    let stem: String = stem.chars().map(|c| if c.is_control() { '_' } else { c }).collect();
-    let mut number = 1;
-    let mut name = cut(&stem, "");
-    while taken.contains(&name) {
-        number += 1;
-        name = cut(&stem, &format!("-{number}"));
-    }
-    name
-}
-
-/// The stem, shortened so that it fits a name together with `suffix`.
-fn cut(stem: &str, suffix: &str) -> String {
-    let mut end = stem.len().min(MAX_NAME_BYTES - suffix.len());
-    while !stem.is_char_boundary(end) {
-        end -= 1;
-    }
-    format!("{}{suffix}", &stem[..end])
 }
 
 /// `COAT:BASE`; names may hold colons themselves, so every one is tried.
@@ -251,14 +202,4 @@ fn layers(text: &str, names: &[String], args: &Args) -> Result<LayeredMaterial, 
     Err(Failure::usage(format!(
         "--layers: expected COAT:BASE with two materials of this pack ({known}), found {text:?}"
     )))
-}
-
-/// Digest of the bytes that were loaded.
-pub(crate) fn digest(path: &Path, loaded: &LoadedMap) -> Result<InputDigest, Failure> {
-    let bytes = std::fs::read(path).map_err(|e| Failure::io(path, "cannot be read", &e))?;
-    if format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&bytes)) != loaded.digest {
-        let message = format!("{}: changed while it was read; run again once it is at rest", path.display());
-        return Err(Failure::new(Exit::InputOutput, message));
-    }
-    Ok(InputDigest::of(&loaded.file_name, &bytes))
 }
