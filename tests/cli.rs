@@ -14,6 +14,8 @@ mod dictionary;
 mod documentation;
 #[path = "cli/environment.rs"]
 mod environment;
+#[path = "cli/export.rs"]
+mod export;
 #[path = "cli/info.rs"]
 mod info;
 #[path = "cli/preview.rs"]

@@ -5,6 +5,7 @@ mod deliver;
 mod demo;
 mod dictionary;
 mod environment;
+mod export;
 mod info;
 mod ndf_maps;
 mod preview;
@@ -33,6 +34,7 @@ enum Command {
     Environment(environment::Args),
     AreaLight(Box<area_light::Args>),
     Preview(preview::Args),
+    Export(export::Args),
     Report(report::Args),
     Demo(demo::Args),
 }
@@ -46,6 +48,7 @@ pub fn bake(cli: Bake) -> Result<(), Failure> {
         Command::Environment(args) => environment::run(&args, terminal),
         Command::AreaLight(args) => area_light::run(*args, terminal),
         Command::Preview(args) => preview::run(&args, terminal),
+        Command::Export(args) => export::run(&args, terminal),
         Command::Report(args) => report::run(&args, terminal),
         Command::Demo(args) => demo::run(&args, terminal),
     }
