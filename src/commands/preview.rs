@@ -13,11 +13,18 @@ use glint_formats::Limits;
 use glint_formats::ndf_maps::LayeredMaterial;
 use std::path::PathBuf;
 
+/// Lines that `--help` shows and a test runs.
+const EXAMPLES: &str = "\
+Examples:
+  glint-bake preview paint.glintpack -o paint.png
+  glint-bake preview paint.glintpack --shape plane --size 320x160 --light 0.5,0.3,1 -o plane.png";
+
 /// Render a picture of a material
 ///
 /// One directional light, microfacets with the pack's NDF, a footprint for every pixel. A pack with two layers shows
 /// both, unless --material names one. Light and view point from the object: x right, y up, z towards the viewer.
 #[derive(clap::Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Pack to show
     #[arg(value_name = "PACK")]

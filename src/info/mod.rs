@@ -2,6 +2,7 @@
 
 mod area_light;
 mod dictionary;
+pub mod diff;
 mod environment;
 mod material;
 mod parameters;

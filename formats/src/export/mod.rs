@@ -5,5 +5,7 @@ mod dfd;
 mod image;
 pub mod ktx2;
 pub mod texel;
+mod texels;
 
 pub use image::{Image, Texture};
+pub use texels::Texels;

@@ -16,10 +16,11 @@ use sidecar::{FileInfo, Sidecar};
 use std::collections::HashSet;
 use std::path::PathBuf;
 
+/// Lines that `--help` shows and a test runs.
 const EXAMPLES: &str = "\
 Examples:
-  glint-bake export pack.glintpack --to ktx2 -o exported
-  glint-bake export pack.glintpack --to exr --section SDTB -o tables";
+  glint-bake export sky.glintpack --to ktx2 -o exported
+  glint-bake export sky.glintpack --to exr --section ENRA -o radiance";
 
 /// Export textures and buffers of a pack as KTX2, DDS, OpenEXR or raw files
 ///
