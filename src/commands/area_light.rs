@@ -23,7 +23,7 @@ const SMALLER: &str = "give --format snorm8, or a part of the map with --crop";
 const EXAMPLES: &str = "\
 Examples:
   glint-bake area-light scratches.png -o light.glintpack
-  glint-bake area-light scratches.png --anisotropic --base-roughness 0.05 --normal-y down -o brushed.glintpack";
+  glint-bake area-light scratches.png --anisotropic --base-roughness 0.05 -o brushed.glintpack";
 
 /// Bake a normal map for rectangle lights at any distance
 ///

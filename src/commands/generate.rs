@@ -97,7 +97,9 @@ fn manual() -> Result<Vec<Document>, Failure> {
             let man = Man::new(command).source(concat!("glint-bake ", env!("CARGO_PKG_VERSION")));
             man.render(&mut bytes)
                 .map_err(|e| Failure::new(Exit::Unexpected, format!("{name} cannot be made: {e}")))?;
-            pages.push(Document { name, bytes });
+            // An empty date loses its quotes, and the version would stand in its place.
+            let page = String::from_utf8_lossy(&bytes).replacen(" 1  \"glint-bake", " 1 \"\" \"glint-bake", 1);
+            pages.push(Document { name, bytes: page.into_bytes() });
         }
     }
     Ok(pages)

@@ -68,6 +68,7 @@ fn check_export(folder: &Path, pack_path: &str, target: &str) {
     let listed = files_of(&sidecar).len() + sidecar["parameters"].as_array().unwrap().len();
     assert_eq!(listed + 1, pack.sections().len(), "every section is a file, parameters or provenance");
     for listed in files_of(&sidecar) {
+        assert_ne!(listed["resource"]["type"], "parameters", "src/info/parameters.rs has no row for {listed}");
         let find = |entry: &&glint_formats::SectionEntry| {
             listed["kind"] == entry.kind.to_string().as_str() && listed["name"] == entry.name.as_str()
         };

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 const EXAMPLES: &str = "\
 Examples:
   glint-bake ndf-maps flakes.png --placement stochastic -o paint.glintpack
-  glint-bake ndf-maps flakes.png scratches.png --layers scratches:flakes --preset draft -o coated.glintpack";
+  glint-bake ndf-maps flakes.png scratches.png --layers scratches:flakes -o coated.glintpack";
 
 /// Bake multi-scale NDF maps of small normal maps
 ///
