@@ -15,6 +15,9 @@ use glint_formats::{FourCc, Pack, area_light, environment};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
+/// Makes a picture of a texture.
+type Draw = fn(&Texels) -> Canvas;
+
 /// Writes the pictures of everything that has one into `folder`, which is created, and says which they are.
 pub fn write_all(pack: &Pack, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     std::fs::create_dir_all(folder).map_err(|e| Failure::io(folder, "cannot be created", &e))?;
@@ -58,7 +61,7 @@ pub fn write_all(pack: &Pack, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     }
     for (i, name) in names_with(pack, area_light::PARAMS).into_iter().enumerate() {
         let stem = file_stem(i, name);
-        let pictures: [(FourCc, &str, fn(&Texels) -> Canvas); 3] = [
+        let pictures: [(FourCc, &str, Draw); 3] = [
             (area_light::NORMALS, "mean-normals", mip_rows::normals),
             (area_light::NORMALS, "roughness", mip_rows::roughness),
             (area_light::ROUGHNESS, "directions", mip_rows::directions),
