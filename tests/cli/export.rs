@@ -105,6 +105,27 @@ fn every_methods_pack_comes_back_from_every_format() {
     }
 }
 
+/// Khronos's own validators, where one is installed: `ktx validate`, or ktx2check before version 4.3.
+#[test]
+fn khronos_finds_nothing_wrong() {
+    let (folder, names) = packs();
+    for name in names {
+        bake(folder.path(), &["export", name, "--to", "ktx2", "-o", "out", "-q"]).ok();
+    }
+    for entry in fs::read_dir(folder.path().join("out")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|e| e != "ktx2") {
+            continue;
+        }
+        let run = |program: &str, args: &[&str]| std::process::Command::new(program).args(args).arg(&path).output();
+        let Ok(output) = run("ktx", &["validate"]).or_else(|_| run("ktx2check", &[])) else {
+            return eprintln!("skipped: neither ktx nor ktx2check can be run");
+        };
+        let message = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success(), "{}: {message}", path.display());
+    }
+}
+
 #[test]
 fn parameters_and_provenance_are_those_of_the_pack() {
     let (folder, _) = packs();

@@ -63,6 +63,8 @@ pub fn write(texture: &Texture, payload: &[u8], metadata: &[(&str, &str)]) -> Op
         out.resize(places[mip as usize], 0);
         out.extend(&payload[texture.mip_range(mip)]);
     }
+    // Khronos's ktx2check 4.0 expects the padding behind the last mip too; others read up to that mip's end.
+    out.resize(end.next_multiple_of(alignment), 0);
     Some(out)
 }
 
