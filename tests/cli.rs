@@ -6,6 +6,8 @@ mod area_light;
 mod bad_input;
 #[path = "cli/bake.rs"]
 mod bake;
+#[path = "cli/compare.rs"]
+mod compare;
 #[path = "cli/damage.rs"]
 mod damage;
 #[path = "cli/dictionary.rs"]
@@ -14,10 +16,18 @@ mod dictionary;
 mod documentation;
 #[path = "cli/environment.rs"]
 mod environment;
+#[path = "cli/examples.rs"]
+mod examples;
+#[path = "cli/export.rs"]
+mod export;
+#[path = "cli/generate.rs"]
+mod generate;
 #[path = "cli/info.rs"]
 mod info;
 #[path = "cli/preview.rs"]
 mod preview;
+#[path = "cli/read_pack.rs"]
+mod read_pack;
 #[path = "cli/report.rs"]
 mod report;
 #[path = "cli/schema.rs"]

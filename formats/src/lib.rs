@@ -16,6 +16,7 @@ mod dictionary_check;
 pub mod environment;
 mod environment_check;
 mod error;
+pub mod export;
 mod issue;
 pub mod kinds;
 pub mod ndf_maps;

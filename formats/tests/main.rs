@@ -7,6 +7,7 @@ mod corpus_typed;
 mod corrupt_corpus;
 mod damage;
 mod documentation;
+mod export;
 mod limits;
 mod round_trip;
 mod samples;

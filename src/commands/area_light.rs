@@ -19,11 +19,18 @@ use std::path::PathBuf;
 /// What makes a pack smaller.
 const SMALLER: &str = "give --format snorm8, or a part of the map with --crop";
 
+/// Lines that `--help` shows and a test runs.
+const EXAMPLES: &str = "\
+Examples:
+  glint-bake area-light scratches.png -o light.glintpack
+  glint-bake area-light scratches.png --anisotropic --base-roughness 0.05 -o brushed.glintpack";
+
 /// Bake a normal map for rectangle lights at any distance
 ///
 /// A mip chain of averaged normals that keep their length, with the roughness of the normals under each texel, and the LTC
 /// tables of GGX. Highlights of area lights then stay as wide and bright as the map makes them, however far away.
 #[derive(clap::Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Normal map: PNG, TGA, JPEG, TIFF, WebP or EXR
     #[arg(value_name = "NORMAL_MAP")]

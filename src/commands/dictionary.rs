@@ -15,11 +15,18 @@ const NAME: &str = "dictionary";
 /// What makes a dictionary smaller.
 const SMALLER: &str = "give fewer --marginals, --levels or --entries";
 
+/// Lines that `--help` shows and a test runs.
+const EXAMPLES: &str = "\
+Examples:
+  glint-bake dictionary -o dictionary.glintpack
+  glint-bake dictionary --marginals 64 --levels 12 --compress -o small.glintpack";
+
 /// Bake a slope dictionary for procedural glints, without a normal map
 ///
 /// A table of slope distributions, from a few facets (level 0) to the smooth limit. One dictionary serves every
 /// material of a scene, at any roughness and density of facets, Beckmann or GGX. The defaults are the paper's.
 #[derive(clap::Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Pack to write
     #[arg(short, long, value_name = "PACK")]

@@ -48,11 +48,18 @@ pub enum FormatArg {
     Unorm16,
 }
 
+/// Lines that `--help` shows and a test runs.
+const EXAMPLES: &str = "\
+Examples:
+  glint-bake environment sky.hdr --face-size 64 -o sky.glintpack
+  glint-bake environment sky.hdr --face-size 32 --levels auto --coloured -o lamps.glintpack";
+
 /// Bake an HDR environment for image-based lighting of glints
 ///
 /// Radiance and the share of a few radiance levels, filtered with GGX at the roughness of each mip, to an error bound;
 /// and the two areas that depend on view angle and roughness only.
 #[derive(clap::Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Equirectangular image of linear radiance: Radiance HDR or OpenEXR
     #[arg(value_name = "IMAGE")]

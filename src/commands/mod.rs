@@ -5,6 +5,8 @@ mod deliver;
 mod demo;
 mod dictionary;
 mod environment;
+mod export;
+mod generate;
 mod info;
 mod ndf_maps;
 mod normal_maps;
@@ -15,11 +17,26 @@ use crate::cli::{Common, LONG_VERSION, Terminal};
 use crate::exit::{Failure, HELP};
 use clap::{CommandFactory, Parser, Subcommand};
 
+/// Lines that `glint-bake --help` shows and a test runs.
+const EXAMPLES: &str = "\
+Examples:
+  glint-bake ndf-maps flakes.png -o paint.glintpack
+  glint-bake dictionary -o dictionary.glintpack";
+
+/// Lines that `glint-info --help` shows and a test runs.
+const INFO_EXAMPLES: &str = "\
+Examples:
+  glint-info paint.glintpack
+  glint-info paint.glintpack --verify
+  glint-info sky.glintpack --plot pictures
+  glint-info sky.glintpack --extract ENRA -o radiance.bin
+  glint-info --diff old.glintpack new.glintpack";
+
 /// The command line of glint-bake.
 #[derive(Parser, Debug)]
-#[command(name = "glint-bake", version, long_version = LONG_VERSION, after_help = HELP, max_term_width = 100)]
+#[command(name = "glint-bake", version, long_version = LONG_VERSION, max_term_width = 100)]
 #[command(about = "Bakes data for real-time glints")]
-#[command(after_long_help = HELP)]
+#[command(after_help = format!("{EXAMPLES}\n\n{HELP}"))]
 pub struct Bake {
     #[command(subcommand)]
     command: Command,
@@ -34,6 +51,8 @@ enum Command {
     Environment(environment::Args),
     AreaLight(Box<area_light::Args>),
     Preview(preview::Args),
+    Export(export::Args),
+    Generate(generate::Args),
     Report(report::Args),
     Demo(demo::Args),
 }
@@ -47,6 +66,8 @@ pub fn bake(cli: Bake) -> Result<(), Failure> {
         Command::Environment(args) => environment::run(&args, terminal),
         Command::AreaLight(args) => area_light::run(*args, terminal),
         Command::Preview(args) => preview::run(&args, terminal),
+        Command::Export(args) => export::run(&args, terminal),
+        Command::Generate(args) => generate::run(&args, terminal),
         Command::Report(args) => report::run(&args, terminal),
         Command::Demo(args) => demo::run(&args, terminal),
     }
@@ -54,7 +75,8 @@ pub fn bake(cli: Bake) -> Result<(), Failure> {
 
 /// The command line of glint-info.
 #[derive(Parser, Debug)]
-#[command(name = "glint-info", version, long_version = LONG_VERSION, after_help = HELP, max_term_width = 100)]
+#[command(name = "glint-info", version, long_version = LONG_VERSION, max_term_width = 100)]
+#[command(after_help = format!("{INFO_EXAMPLES}\n\n{HELP}"))]
 #[command(about = "Says what a pack holds and whether it is intact")]
 pub struct Info {
     #[command(flatten)]
@@ -69,7 +91,8 @@ pub fn info(cli: Info) -> Result<(), Failure> {
     info::run(&cli.args, terminal)
 }
 
-/// Both programs as clap sees them, for the test that compares flags and documentation.
+/// Both programs as clap sees them, for manual pages, completions, and the tests that compare flags and
+/// documentation.
 pub fn programs() -> [clap::Command; 2] {
     [Bake::command(), Info::command()]
 }

@@ -9,15 +9,22 @@ use clap::ValueEnum;
 use glam::Vec3;
 use glint_bake_core::ndf_maps::eval::Material;
 use glint_bake_core::ndf_maps::sections;
+use glint_formats::Limits;
 use glint_formats::ndf_maps::LayeredMaterial;
-use glint_formats::{Limits, Severity};
 use std::path::PathBuf;
+
+/// Lines that `--help` shows and a test runs.
+const EXAMPLES: &str = "\
+Examples:
+  glint-bake preview paint.glintpack -o paint.png
+  glint-bake preview paint.glintpack --shape plane --size 320x160 --light 0.5,0.3,1 -o plane.png";
 
 /// Render a picture of a material
 ///
 /// One directional light, microfacets with the pack's NDF, a footprint for every pixel. A pack with two layers shows
 /// both, unless --material names one. Light and view point from the object: x right, y up, z towards the viewer.
 #[derive(clap::Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Pack to show
     #[arg(value_name = "PACK")]
@@ -89,7 +96,7 @@ struct Look {
 
 impl Look {
     fn choose(report: &Report, args: &Args) -> Result<Look, Failure> {
-        let (Some(pack), Ok(())) = (report.pack(), sound(report)) else { return Err(sound(report).unwrap_err()) };
+        let pack = report.sound()?;
         let names = sections::materials(pack);
         let load = |name: &str| sections::from_pack(pack, name).map_err(|e| Failure::bake(&args.pack, &e));
         if let Some(name) = &args.material {
@@ -140,17 +147,5 @@ impl Look {
             exposure: args.exposure as f32,
             fade: None,
         }
-    }
-}
-
-/// The first error of a pack, as a failure.
-fn sound(report: &Report) -> Result<(), Failure> {
-    let fail = |what: String| Err(Failure::new(report.exit(), format!("{}: {what}", report.file)));
-    if let Some(error) = &report.error {
-        return fail(error.clone());
-    }
-    match report.issues.iter().find(|issue| issue.severity == Severity::Error) {
-        Some(issue) => fail(issue.to_string()),
-        None => Ok(()),
     }
 }

@@ -2,8 +2,10 @@
 
 mod area_light;
 mod dictionary;
+pub mod diff;
 mod environment;
 mod material;
+mod parameters;
 pub mod plot;
 mod text;
 
@@ -11,9 +13,10 @@ pub use area_light::AreaLightInfo;
 pub use dictionary::DictionaryInfo;
 pub use environment::EnvironmentInfo;
 pub use material::MaterialInfo;
+pub use parameters::ParametersInfo;
 pub use text::{kib, percent};
 
-use crate::exit::Exit;
+use crate::exit::{Exit, Failure};
 use glint_bake_core::ndf_maps::sections;
 use glint_formats::ndf_maps::{LAYERS, LayeredMaterial};
 use glint_formats::provenance::{PROVENANCE, Provenance};
@@ -52,6 +55,8 @@ pub struct Report {
     pub environments: Vec<EnvironmentInfo>,
     /// Materials of the area-light method.
     pub area_lights: Vec<AreaLightInfo>,
+    /// Every parameter section, field by field.
+    pub parameters: Vec<ParametersInfo>,
     /// Where the pack comes from.
     pub provenance: Vec<Provenance>,
     #[serde(skip)]
@@ -94,6 +99,7 @@ impl Report {
             dictionaries: Vec::new(),
             environments: Vec::new(),
             area_lights: Vec::new(),
+            parameters: Vec::new(),
             provenance: Vec::new(),
             pack: None,
         }
@@ -114,6 +120,7 @@ impl Report {
             report.dictionaries = DictionaryInfo::all_of(&pack);
             report.environments = EnvironmentInfo::all_of(&pack);
             report.area_lights = AreaLightInfo::all_of(&pack);
+            report.parameters = ParametersInfo::all_of(&pack);
             report.provenance = decode_all(&pack, PROVENANCE);
         }
         report.pack = Some(pack);
@@ -123,6 +130,19 @@ impl Report {
     /// The pack, when it could be opened.
     pub fn pack(&self) -> Option<&Pack> {
         self.pack.as_ref()
+    }
+
+    /// The pack when it is sound; else its first error as a failure.
+    pub fn sound(&self) -> Result<&Pack, Failure> {
+        let fail = |what: String| Err(Failure::new(self.exit(), format!("{}: {what}", self.file)));
+        if let Some(error) = &self.error {
+            return fail(error.clone());
+        }
+        match (self.issues.iter().find(|issue| issue.severity == Severity::Error), &self.pack) {
+            (Some(issue), _) => fail(issue.to_string()),
+            (None, Some(pack)) => Ok(pack),
+            (None, None) => fail("cannot be opened".into()),
+        }
     }
 
     /// Whether an issue keeps the pack from being used.

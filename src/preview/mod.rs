@@ -7,7 +7,7 @@ mod scene;
 mod shape;
 mod sky;
 mod surface;
-mod tone;
+pub mod tone;
 
 pub use scene::{Camera, Object, Scene};
 pub use shape::Shape;

@@ -25,6 +25,11 @@ pub fn develop(radiance: &[Vec3], width: u32, height: u32, exposure: f32) -> Can
     Canvas { width, height, pixels }
 }
 
+/// One pixel, without glare.
+pub fn pixel(radiance: Vec3, exposure: f32) -> [u8; 3] {
+    film(radiance * exposure).to_array().map(encode)
+}
+
 /// Gaussian blur, rows then columns, edges repeated.
 fn blur(pixels: &[Vec3], width: usize, height: usize, sigma: f32) -> Vec<Vec3> {
     let reach = (3.0 * sigma).ceil() as isize;

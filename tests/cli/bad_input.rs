@@ -43,7 +43,7 @@ fn crc32(bytes: &[u8]) -> u32 {
 }
 
 /// Puts an sRGB chunk behind the header of a PNG.
-fn tagged_srgb(png: &[u8]) -> Vec<u8> {
+pub fn tagged_srgb(png: &[u8]) -> Vec<u8> {
     let chunk = b"sRGB\0";
     let mut out = png[..33].to_vec();
     out.extend(1u32.to_be_bytes());

@@ -147,3 +147,46 @@ fn the_demo_bakes_verifies_and_paints() {
     info(folder.path(), &["glint-demo/demo.glintpack", "--verify"]).ok();
     assert!(folder.path().join("glint-demo/demo.png").exists());
 }
+
+#[test]
+fn reflectances_of_layers_reach_the_pack() {
+    let folder = maps();
+    let layers = ["--layers", "scratches:flakes", "--coat-f0", "0.06", "--base-f0", "0.9,0.5,0.1"];
+    bake(folder.path(), &[&BOTH[..], &layers].concat()).ok();
+    let report = json(&info(folder.path(), &["out.glintpack", "--json"]).ok().stdout);
+    let found = &report["layers"][0];
+    assert_eq!((&found["coat_f0"], &found["base_f0"]), (&0.06.into(), &serde_json::json!([0.9, 0.5, 0.1])));
+}
+
+/// A ramp of one texel a column is a plane that is tilted by its slope.
+#[test]
+fn height_maps_are_read_by_their_scale() {
+    let folder = maps();
+    let ramp = image::GrayImage::from_fn(8, 8, |x, _| image::Luma([(30 * x.min(8 - x)) as u8]));
+    ramp.save(folder.path().join("ramp.png")).unwrap();
+    let normals = |scale: &str| {
+        bake(folder.path(), &["ndf-maps", "ramp.png", "--height", scale, "-o", "out.glintpack"]).ok();
+        info(folder.path(), &["out.glintpack", "--extract", "NMNO", "-o", "normals.bin", "-q"]).ok();
+        let bytes = fs::read(folder.path().join("normals.bin")).unwrap();
+        let x = i16::from_le_bytes([bytes[4 * 2], bytes[4 * 2 + 1]]); // texel (2, 0), where the ramp rises
+        f64::from(x) / 32767.0
+    };
+    for scale in ["1", "4"] {
+        // White is `scale` texels high, so the slope is 30 / 255 of it, and the normal leans back.
+        let slope = scale.parse::<f64>().unwrap() * 30.0 / 255.0;
+        let expected = -slope / (1.0 + slope * slope).sqrt();
+        assert!((normals(scale) - expected).abs() < 1e-3, "{scale}: {}, expected {expected}", normals(scale));
+    }
+}
+
+#[test]
+fn messages_are_coloured_when_asked() {
+    let folder = maps();
+    let refused =
+        |flags: &[&str]| bake(folder.path(), &[&["ndf-maps", "none.png", "-o", "x.glintpack"], flags].concat());
+    assert!(refused(&["--color", "always"]).stderr.contains("\x1b[1;31merror:"));
+    for flags in [&["--color", "never"][..], &["--color", "auto"], &[]] {
+        let plain = refused(flags).stderr;
+        assert!(plain.contains("error: none.png") && !plain.contains('\x1b'), "{plain}");
+    }
+}

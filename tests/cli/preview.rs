@@ -58,3 +58,22 @@ fn wrong_requests_are_explained() {
     }
     info(folder.path(), &["out.glintpack", "--verify"]).ok();
 }
+
+#[test]
+fn view_reflectance_and_exposure_change_the_picture() {
+    let folder = maps();
+    bake(folder.path(), &["ndf-maps", "flakes.png", "-o", "out.glintpack", "--placement", "stochastic"]).ok();
+    let shot = |flags: &[&str]| {
+        let args = ["preview", "out.glintpack", "-o", "shot.png", "--size", "48x48", "--light", "0,0.5,1"];
+        bake(folder.path(), &[&args[..], flags].concat()).ok();
+        image::open(folder.path().join("shot.png")).unwrap().to_rgb8()
+    };
+    let sum = |picture: &image::RgbImage, channel: usize| picture.pixels().map(|p| u64::from(p[channel])).sum::<u64>();
+    let plain = shot(&[]);
+    assert!(shot(&["--view", "0,0.35,1"]) == plain, "the default, spelt out");
+    assert!(shot(&["--view", "1,0,0.5"]) != plain);
+    let red = shot(&["--f0", "0.56,0,0"]);
+    assert!(sum(&red, 0) > 2 * sum(&red, 2) && sum(&plain, 2) > 0, "{} {}", sum(&red, 0), sum(&red, 2));
+    let bright = shot(&["--exposure", "4"]);
+    assert!(sum(&bright, 1) > sum(&plain, 1));
+}

@@ -1,5 +1,6 @@
 //! `glint-bake report`: tables and a plot with a row for every setting, and refusals before any work.
 
+use crate::bad_input::tagged_srgb;
 use crate::support::bake;
 use glint_bake::input::synthetic;
 use std::fs;
@@ -25,4 +26,19 @@ fn a_missing_folder_is_refused_before_any_work() {
     let outcome = bake(folder.path(), &["report", "none.png", "-o", "nowhere"]);
     assert_eq!(outcome.code, 3);
     assert!(outcome.stderr.contains("nowhere"), "{}", outcome.stderr);
+}
+
+#[test]
+fn a_report_takes_parts_of_maps_and_tagged_files_when_told() {
+    let folder = tempfile::tempdir().unwrap();
+    synthetic::leather(8, 8, 1).save(folder.path().join("plain.png")).unwrap();
+    let plain = fs::read(folder.path().join("plain.png")).unwrap();
+    fs::write(folder.path().join("tagged.png"), tagged_srgb(&plain)).unwrap();
+    let report = ["report", "tagged.png", "-o", ".", "--footprints", "1", "--crop", "2x2+1+0"];
+    let refused = bake(folder.path(), &report);
+    assert_eq!(refused.code, 4, "{}", refused.stderr);
+    assert!(refused.stderr.contains("--assume-linear"), "{}", refused.stderr);
+    bake(folder.path(), &[&report[..], &["--assume-linear"]].concat()).ok();
+    let text = fs::read_to_string(folder.path().join("ACCURACY.md")).unwrap();
+    assert!(text.contains("## tagged, 2 × 2"), "{text}");
 }

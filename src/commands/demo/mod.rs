@@ -19,10 +19,17 @@ use glint_formats::{Codec, Limits};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+/// Lines that `--help` shows and a test runs.
+const EXAMPLES: &str = "\
+Examples:
+  glint-bake demo
+  glint-bake demo --size 320x160 -o glint-demo";
+
 /// Bake a built-in example, verify it, and paint a picture of it
 ///
 /// Metallic paint under a scratched clear coat, and a brushed plate, from maps made by formula.
 #[derive(clap::Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Folder for the pack and the picture; it is created
     #[arg(short, long, value_name = "DIR", default_value = "glint-demo")]

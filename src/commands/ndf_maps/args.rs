@@ -7,11 +7,18 @@ use glint_bake_core::ndf_maps::transform::TransformRanges;
 use glint_formats::ndf_maps::DensityStorage;
 use std::path::PathBuf;
 
+/// Lines that `--help` shows and a test runs.
+const EXAMPLES: &str = "\
+Examples:
+  glint-bake ndf-maps flakes.png --placement stochastic -o paint.glintpack
+  glint-bake ndf-maps flakes.png scratches.png --layers scratches:flakes -o coated.glintpack";
+
 /// Bake multi-scale NDF maps of small normal maps
 ///
 /// Each MAP becomes one material of the pack. Maps are small examples (up to 128 x 128 texels, or --crop of larger
 /// ones) that the placement repeats over a surface of any size.
 #[derive(clap::Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Normal maps: PNG, TGA, JPEG, TIFF, WebP or EXR
     #[arg(required = true, value_name = "MAP")]

@@ -12,11 +12,17 @@ use crate::input::{Crop, InputOptions, load_normal_map};
 use crate::output;
 use std::path::PathBuf;
 
+/// Lines that `--help` shows and a test runs.
+const EXAMPLES: &str = "\
+Examples:
+  glint-bake report flakes.png --crop 4x4+0+0 --footprints 4 -o .";
+
 /// Measure speed against error on examples
 ///
 /// Bakes every example with several settings, holds tiles and footprints against the exact integral, and writes
 /// ACCURACY.md and one plot an example. Takes minutes an example; --footprints makes it shorter or more certain.
 #[derive(clap::Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Examples: normal maps, whole or with --crop
     #[arg(value_name = "MAP", required = true)]

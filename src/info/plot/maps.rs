@@ -53,7 +53,7 @@ fn disk_point(x: u32, y: u32, cell: u32, inside: Vec2) -> Vec2 {
 }
 
 /// Black over red and yellow to white.
-fn heat(value: f32) -> [u8; 3] {
+pub(super) fn heat(value: f32) -> [u8; 3] {
     [3.0, 1.6, 0.6].map(|gain| {
         let start = if gain > 2.0 {
             0.0

@@ -1,16 +1,24 @@
-//! Pictures of what a pack holds: NDF tiles, normals, placement, tile errors, dictionaries.
+//! Pictures of what a pack holds: NDF tiles, normals, placement, tile errors, dictionaries, environments, area lights.
 
+mod cubes;
 mod histogram;
 mod maps;
 mod marginals;
+mod mip_rows;
 
+use crate::canvas::Canvas;
 use crate::exit::{Exit, Failure};
 use crate::output;
 use glint_bake_core::{dictionary, ndf_maps::sections};
-use glint_formats::Pack;
+use glint_formats::export::{Texels, Texture};
+use glint_formats::{FourCc, Pack, area_light, environment};
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-/// Writes the pictures of every material and dictionary into `folder`, which is created, and says which they are.
+/// Makes a picture of a texture.
+type Draw = fn(&Texels) -> Canvas;
+
+/// Writes the pictures of everything that has one into `folder`, which is created, and says which they are.
 pub fn write_all(pack: &Pack, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     std::fs::create_dir_all(folder).map_err(|e| Failure::io(folder, "cannot be created", &e))?;
     let mut written = Vec::new();
@@ -39,7 +47,49 @@ pub fn write_all(pack: &Pack, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
             .map_err(|e| Failure::new(Exit::BadInput, format!("dictionary {name}: {e}")))?;
         write(format!("{}-marginals.svg", file_stem(i, name)), marginals::svg(name, &dictionary).into_bytes())?;
     }
+    for (i, name) in names_with(pack, environment::PARAMS).into_iter().enumerate() {
+        let stem = file_stem(i, name);
+        if let Some(picture) = picture_of(pack, environment::RADIANCE, name, cubes::radiance) {
+            write(format!("{stem}-radiance.png"), picture.to_png())?;
+        }
+        let colours = payload(pack, environment::COLOURS, name);
+        let colours = colours.as_ref().and_then(|(texture, bytes)| Texels::new(*texture, bytes));
+        let levels = |texels: &Texels| cubes::levels(texels, colours.as_ref());
+        if let Some(picture) = picture_of(pack, environment::INDICATORS, name, levels) {
+            write(format!("{stem}-levels.png"), picture.to_png())?;
+        }
+    }
+    for (i, name) in names_with(pack, area_light::PARAMS).into_iter().enumerate() {
+        let stem = file_stem(i, name);
+        let pictures: [(FourCc, &str, Draw); 3] = [
+            (area_light::NORMALS, "mean-normals", mip_rows::normals),
+            (area_light::NORMALS, "roughness", mip_rows::roughness),
+            (area_light::ROUGHNESS, "directions", mip_rows::directions),
+        ];
+        for (kind, what, draw) in pictures {
+            if let Some(picture) = picture_of(pack, kind, name, draw) {
+                write(format!("{stem}-{what}.png"), picture.to_png())?;
+            }
+        }
+    }
     Ok(written)
+}
+
+/// Names that have a section of this kind.
+fn names_with(pack: &Pack, kind: FourCc) -> Vec<&str> {
+    pack.names().into_iter().filter(|name| pack.find(kind, name).is_some()).collect()
+}
+
+/// A texture of a pack and its bytes.
+fn payload<'a>(pack: &'a Pack, kind: FourCc, name: &str) -> Option<(Texture, Cow<'a, [u8]>)> {
+    let entry = pack.find(kind, name)?;
+    Some((Texture::of(&entry.resource)?, pack.payload(entry).ok()?))
+}
+
+/// What `draw` makes of a texture; `None` when the pack has none of this kind.
+fn picture_of(pack: &Pack, kind: FourCc, name: &str, draw: impl Fn(&Texels) -> Canvas) -> Option<Canvas> {
+    let (texture, bytes) = payload(pack, kind, name)?;
+    Texels::new(texture, &bytes).map(|texels| draw(&texels))
 }
 
 /// Text as it stands in an SVG.

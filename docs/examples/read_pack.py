@@ -1,0 +1,174 @@
+#!/usr/bin/env python3
+"""Reads a glintpack and prints what it holds as JSON: python3 read_pack.py PACK
+
+Written from docs/FORMAT.md alone, with nothing but Python's standard library and xxh3.py beside it. Of the checks of
+"How to read a pack" it leaves out what is in the records and texels of known kinds, and, before Python 3.14, which can
+decompress, compressed payloads; "left_out" says so. A pack that is not sound ends with exit code 4.
+"""
+import json
+import struct
+import sys
+
+from xxh3 import xxh3_64
+
+def f32(value):
+    """The shortest decimal that is this single float, as JSON writers of other languages print it."""
+    texts = (f"{value:.{digits}g}" for digits in range(1, 10))
+    return next(float(t) for t in texts if struct.pack("<f", float(t)) == struct.pack("<f", value))
+
+
+# Types of parameters: a name of a number, "bool", "string", ("list", T), ("array", n, T), ("enum", variants), or a
+# dictionary of fields. A variant is its name, or (name, fields).
+NUMBERS = {"u8": "<B", "u16": "<H", "u32": "<I", "u64": "<Q", "f32": "<f", "f64": "<d"}
+WRAP = ("enum", ["Repeat", "Clamp"])
+LEVEL = dict(tile_texels="u32", tiles_x="u32", tiles_y="u32", first_tile="u32")
+CELLS = dict(cells_x="u32", cells_y="u32", cell_texels="f32", seed="u64")
+PROVENANCE = dict(
+    tool_version="string", git_hash="string", method="string", options=("list", ("array", 2, "string")), seed="u64",
+    inputs=("list", dict(name="string", xxh3_128="string", bytes="u64")), normal_convention="string",
+    notes=("list", "string"))
+PARAMETERS = {
+    "PROV": PROVENANCE,
+    "NMPP": dict(
+        width="u32", height="u32", wrap=WRAP, intrinsic_roughness="f32",
+        storage=("enum", ["SqrtU8", "F16", "PaperF32"]), levels=("list", LEVEL), max_error="f32",
+        measured=dict(mean="f64", p95="f64", worst="f64", energy="f64")),
+    "PLPP": dict(kind=("enum", ["Tiled", ("Stochastic", CELLS)]), palette_len="u32"),
+    "LAYR": dict(coat="string", base="string", coat_f0="f32", base_f0=("array", 3, "f32")),
+    "SDPP": dict(
+        marginals="u32", levels="u32", entries="u32", alpha_dict="f64", lobe_std="f64", domain="f64", seed="u64",
+        measured=dict(normalisation="f64", mean_l1_first_level="f64", ks_last_level="f64")),
+    "ENPP": dict(
+        face_size="u32", kernel=("enum", ["Ndf", "GgxNl"]), storage=("enum", ["F16", "F32", "Unorm16"]),
+        roughness=("list", "f64"), radiance_scale="f64", levels=("list", "f64"),
+        level_choice=("enum", ["Optimal", "LogUniform"]), coloured="bool", albedo_size="u32", source_width="u32",
+        source_height="u32", negative_pixels="u64", mean_radiance=("array", 3, "f64"), max_error="f64",
+        measured=dict(mips=("list", dict(rmse="f64", worst="f64")), texels="u32", energy="f64", second_moment="f64")),
+    "ALPP": dict(
+        width="u32", height="u32", wrap=WRAP, base_roughness="f32", storage=("enum", ["F16", "Snorm8"]),
+        anisotropic="bool", measured=dict(normal_angle="f64", roughness="f64", table_mean="f64")),
+}
+KINDS = set(PARAMETERS) | set("NMTI NMDE NMNO PLPL PLNO PLCL SDTB ENRA ENIN ENCO ENAL ALNM ALRO ALLI ALLT".split())
+TEXEL_BYTES = {9: 1, 10: 1, 13: 1, 16: 2, 17: 2, 37: 4, 38: 4, 41: 4, 70: 2, 71: 2, 74: 2, 76: 2, 77: 4, 78: 4, 81: 4,
+               83: 4, 91: 8, 92: 8, 95: 8, 97: 8, 98: 4, 100: 4, 101: 8, 103: 8, 107: 16, 109: 16, 122: 4, 123: 4}
+
+
+def check(holds, message):
+    if not holds:
+        raise ValueError(message)
+
+
+class Decoder:
+    def __init__(self, data): self.data, self.at = data, 0
+
+    def take(self, count):
+        check(count <= len(self.data) - self.at, "parameters end too early")
+        self.at += count
+        return self.data[self.at - count:self.at]
+
+    def number(self, name): return struct.unpack(NUMBERS[name], self.take(struct.calcsize(NUMBERS[name])))[0]
+
+    def value(self, of):
+        if isinstance(of, dict):
+            return {name: self.value(field) for name, field in of.items()}
+        if of == "bool":
+            return [False, True][self.number("u8")]
+        if of == "string":
+            return self.take(self.number("u64")).decode()
+        if of == "f32":
+            return f32(self.number("f32"))
+        if isinstance(of, str):
+            return self.number(of)
+        if of[0] == "enum":
+            variant = of[1][self.number("u32")]
+            return variant if isinstance(variant, str) else {variant[0]: self.value(variant[1])}
+        count = of[1] if of[0] == "array" else self.number("u64")
+        check(of[0] == "array" or count <= len(self.data), "a list is longer than its payload")
+        return [self.value(of[-1]) for _ in range(count)]
+
+
+def resource(words):
+    if words[0] == 2:
+        names = ("vk_format", "width", "height", "layers", "faces", "mips")
+        check(min(words[2:7]) > 0 and words[5] in (1, 6) and words[7] == 0, "bad texture")
+        check(words[5] == 1 or words[2] == words[3], "faces of a cube that are not square")
+        check(words[6] <= max(words[2:4]).bit_length(), "more mips than a texture of this size has")
+        return dict(type="texture", **dict(zip(names, words[1:7])))
+    check(words[0] in (0, 1), f"unknown resource type {words[0]}")
+    if words[0] == 1:
+        check(words[1] > 0 and not any(words[4:]), "bad buffer")
+        return dict(type="buffer", stride=words[1], count=words[2] | words[3] << 32)
+    check(not any(words), "bad parameters")
+    return dict(type="parameters")
+
+
+def mip_bytes(of):
+    """Bytes of each mip of a texture, all its layers and faces together; none where its format is not known."""
+    if of["vk_format"] not in TEXEL_BYTES:
+        return None
+    sizes = [max(1, of["width"] >> m) * max(1, of["height"] >> m) for m in range(of["mips"])]
+    return [TEXEL_BYTES[of["vk_format"]] * of["layers"] * of["faces"] * size for size in sizes]
+
+
+def read(path):
+    with open(path, "rb") as file:
+        data = file.read()
+    check(len(data) >= 40 and data[:12] == b"\xabGLINTP\xbb\r\n\x1a\n", "not a glintpack")
+    major, minor, count, flags, length, checksum = struct.unpack_from("<HHIIQQ", data, 12)
+    check(major == 1 and flags == 0, "written by a newer program")
+    end = 40 + 136 * count
+    check(length == len(data) and end <= length, "cut short or extended")
+    check(xxh3_64(data[:32] + bytes(8) + data[40:end]) == checksum, "header checksum differs")
+    out = dict(file=path, bytes=length, version=[major, minor], sections=[], parameters=[], provenance=[], textures=[],
+               left_out=["contents of textures and buffers"])
+    for start in range(40, end, 136):
+        kind, version, required, codec, offset, stored, raw, checksum = struct.unpack_from("<4sHBBQQQQ", data, start)
+        of, size = resource(struct.unpack_from("<8I", data, start + 40)), data[start + 72]
+        kind, name = kind.decode("ascii"), data[start + 73:start + 73 + size].decode()
+        check(size <= 63 and not any(data[start + 73 + size:start + 136]), "bad name")
+        check(all(c >= " " and not "\x7f" <= c < "\xa0" for c in name), "control characters in a name")
+        check(required in (0, 1) and codec in (0, 1) and (codec == 1 or stored == raw), f"{kind}: bad entry")
+        check(offset == -(-end // 256) * 256 and offset + stored <= length, f"{kind}: in the wrong place")
+        check(not any(data[end:offset]), f"{kind}: padding is not zero")
+        end = offset + stored
+        payload = data[offset:end]
+        check(xxh3_64(payload) == checksum, f"{kind}: checksum differs")
+        check(all((kind, name) != (s["kind"], s["name"]) for s in out["sections"]), f"{kind}: there twice")
+        out["sections"].append(dict(
+            kind=kind, name=name, version=version, required=bool(required), codec=["none", "zstd"][codec], resource=of,
+            offset=offset, stored_len=stored, raw_len=raw, checksum=f"{checksum:016x}"))
+        check(of["type"] != "parameters" or raw <= 16 << 20, f"{kind}: parameters larger than 16 MiB")
+        if codec == 1:
+            try:
+                from compression import zstd  # Python 3.14
+                payload = zstd.ZstdDecompressor().decompress(payload, raw + 1)
+                check(len(payload) == raw, f"{kind}: decompresses to another length")
+            except ImportError:
+                out["left_out"].append(f"decompression of {kind} {name}")
+                continue
+        if of["type"] == "texture":
+            mips = mip_bytes(of)
+            check(mips is None or sum(mips) == raw, f"{kind}: raw length differs")
+            out["textures"].append(dict(kind=kind, name=name, mip_bytes=mips, **of))
+        elif of["type"] == "buffer":
+            check(of["stride"] * of["count"] == raw, f"{kind}: raw length differs")
+        elif kind in PARAMETERS and version == 1:
+            decoder = Decoder(payload)
+            value = decoder.value(PARAMETERS[kind])
+            check(decoder.at == len(payload), f"{kind}: bytes after the value")
+            if kind == "PROV":
+                out["provenance"].append(value)
+            else:
+                out["parameters"].append(dict(kind=kind, name=name, value=value))
+        known = kind in KINDS and version == 1
+        check(known or not required, f"{kind} version {version}: required, and not known here")
+    check(end == length, "bytes after the last section")
+    return out
+
+
+if __name__ == "__main__":
+    try:
+        json.dump(read(sys.argv[1]), sys.stdout, indent=2, ensure_ascii=False)
+    except (ValueError, LookupError, struct.error) as error:
+        print(f"{sys.argv[1]}: {error}", file=sys.stderr)
+        sys.exit(4)

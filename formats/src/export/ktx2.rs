@@ -1,0 +1,85 @@
+//! A texture as a KTX2 file (Khronos Texture 2.0, sections 3 to 5). Without supercompression, so any loader reads it.
+//!
+//! A pack and a KTX2 file order the images of a mip alike; the file has the smallest mip first and aligns each.
+
+use super::image::Texture;
+use super::{dfd, texel};
+
+const IDENTIFIER: [u8; 12] = *b"\xABKTX 20\xBB\r\n\x1A\n";
+const HEADER_BYTES: usize = 80;
+const LEVEL_ENTRY_BYTES: usize = 24;
+
+/// Bytes of a KTX2 file with this texture. `metadata` are keys with text values; those that begin with `KTX` are
+/// Khronos's. A texture of one layer is no array, one of six faces is a cube. `None` for a format packs do not use.
+pub fn write(texture: &Texture, payload: &[u8], metadata: &[(&str, &str)]) -> Option<Vec<u8>> {
+    let layout = texel::layout(texture.vk_format)?;
+    let dfd = dfd::descriptor(&layout, texture.texel_bytes() as u8);
+    let kvd = key_values(metadata);
+    let type_size = (layout.bits / 8).max(1) as usize;
+    let type_size = if layout.bits % 8 == 0 { type_size } else { texture.texel_bytes() };
+    let dfd_at = HEADER_BYTES + LEVEL_ENTRY_BYTES * texture.mips as usize;
+    let kvd_at = dfd_at + dfd.len();
+
+    // Where each mip lies: the last first, each at a multiple of its texel and of 4.
+    let alignment = texture.texel_bytes().max(4);
+    let mut end = kvd_at + kvd.len();
+    let mut places = vec![0; texture.mips as usize];
+    for mip in (0..texture.mips).rev() {
+        places[mip as usize] = end.next_multiple_of(alignment);
+        end = places[mip as usize] + texture.mip_bytes(mip);
+    }
+
+    let mut out = Vec::with_capacity(end);
+    out.extend(IDENTIFIER);
+    let layers = if texture.layers > 1 { texture.layers } else { 0 };
+    let word = |value: usize| value as u32;
+    for value in [
+        texture.vk_format,
+        word(type_size),
+        texture.width,
+        texture.height,
+        0, // not a volume
+        layers,
+        texture.faces,
+        texture.mips,
+        0, // no supercompression
+        word(dfd_at),
+        word(dfd.len()),
+        if kvd.is_empty() { 0 } else { word(kvd_at) },
+        word(kvd.len()),
+    ] {
+        out.extend(value.to_le_bytes());
+    }
+    out.extend([0; 16]); // no data of a supercompression
+    for (mip, place) in places.iter().enumerate() {
+        let bytes = texture.mip_bytes(mip as u32) as u64;
+        for value in [*place as u64, bytes, bytes] {
+            out.extend(value.to_le_bytes());
+        }
+    }
+    out.extend(dfd);
+    out.extend(kvd);
+    for mip in (0..texture.mips).rev() {
+        out.resize(places[mip as usize], 0);
+        out.extend(&payload[texture.mip_range(mip)]);
+    }
+    // Khronos's ktx2check 4.0 expects the padding behind the last mip too; others read up to that mip's end.
+    out.resize(end.next_multiple_of(alignment), 0);
+    Some(out)
+}
+
+/// Keys and values in the order of their keys, each padded to four bytes.
+fn key_values(metadata: &[(&str, &str)]) -> Vec<u8> {
+    let mut sorted = metadata.to_vec();
+    sorted.sort();
+    let mut out = Vec::new();
+    for (key, value) in sorted {
+        out.extend(((key.len() + value.len() + 2) as u32).to_le_bytes());
+        for text in [key, value] {
+            out.extend(text.as_bytes());
+            out.push(0);
+        }
+        out.resize(out.len().next_multiple_of(4), 0);
+    }
+    out
+}
