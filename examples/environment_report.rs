@@ -27,6 +27,12 @@ const COUNTS: [usize; 5] = [2, 4, 6, 8, 16];
 /// Floors of radiance that the paper's levels are tried with; the best counts.
 const FLOORS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
+/// Whole-program optimisation of this build, for the timings.
+const LTO: &str = match option_env!("CARGO_PROFILE_RELEASE_LTO") {
+    Some(lto) => lto,
+    None => "as in Cargo.toml",
+};
+
 fn main() {
     let args: Vec<String> = std::env::args().collect();
     let data = PathBuf::from(std::env::var("GLINT_DATA").unwrap_or_else(|_| "../shared/data".into()));
@@ -34,7 +40,7 @@ fn main() {
         .map(|entries| entries.filter_map(|entry| Some(entry.ok()?.path())).collect())
         .unwrap_or_default();
     paths.sort();
-    let mut text = String::from(HEAD);
+    let mut text = format!("{HEAD}\nRelease build, lto {LTO}.\n");
     let (mut defaults, mut filters, mut mips, mut moments) = Default::default();
     let mut points = Vec::new();
     for path in &paths {

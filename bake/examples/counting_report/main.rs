@@ -17,6 +17,12 @@ use glint_bake_core::rng::ItemRng;
 use std::time::Instant;
 use variants::{Draw, Variant, variants};
 
+/// Whole-program optimisation of this build, for the timings.
+const LTO: &str = match option_env!("CARGO_PROFILE_RELEASE_LTO") {
+    Some(lto) => lto,
+    None => "as in Cargo.toml",
+};
+
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let svg = match arguments.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
@@ -25,7 +31,8 @@ fn main() {
         _ => return eprintln!("usage: counting_report [--svg FILE]"),
     };
     println!("# Counting: error and cost\n");
-    println!("Written by `just report`; do not edit. The plot is [counting-report.svg](counting-report.svg).\n");
+    println!("Written by `just report`; do not edit. The plot is [counting-report.svg](counting-report.svg).");
+    println!("Release build, lto {LTO}.\n");
     let all = variants();
     by_trials(&all[0], &all[1]);
     front(&all);
@@ -253,6 +260,8 @@ fn draws(paper: &Variant, ours: &Variant) {
         (1e10, 1e-9),
         (1e16, 1e-16),
         (1e16, 8e-16),
+        (1e14, 0.3),
+        (1e16, 0.5),
     ];
     for (item, (n, p)) in places.into_iter().enumerate() {
         let q = 1.0 - p;
