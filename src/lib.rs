@@ -1,4 +1,4 @@
-//! What the programs share: flags, files, progress, reports, the preview.
+//! What the programs share: flags, files, progress, reports, projects, the preview.
 
 pub mod canvas;
 pub mod cli;
@@ -10,3 +10,4 @@ pub mod output;
 pub mod pack;
 pub mod preview;
 pub mod progress;
+pub mod project;

@@ -6,6 +6,10 @@ mod area_light;
 mod bad_input;
 #[path = "cli/bake.rs"]
 mod bake;
+#[path = "cli/build.rs"]
+mod build;
+#[path = "cli/build_real.rs"]
+mod build_real;
 #[path = "cli/damage.rs"]
 mod damage;
 #[path = "cli/dictionary.rs"]
@@ -16,6 +20,10 @@ mod documentation;
 mod environment;
 #[path = "cli/info.rs"]
 mod info;
+#[path = "cli/ninja.rs"]
+mod ninja;
+#[path = "cli/pipelines.rs"]
+mod pipelines;
 #[path = "cli/preview.rs"]
 mod preview;
 #[path = "cli/report.rs"]

@@ -24,6 +24,7 @@ const SMALLER: &str = "give --format snorm8, or a part of the map with --crop";
 /// A mip chain of averaged normals that keep their length, with the roughness of the normals under each texel, and the LTC
 /// tables of GGX. Highlights of area lights then stay as wide and bright as the map makes them, however far away.
 #[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Example:\n  glint-bake area-light brushed.png --format snorm8 -o brushed-lit.glintpack")]
 pub struct Args {
     /// Normal map: PNG, TGA, JPEG, TIFF, WebP or EXR
     #[arg(value_name = "NORMAL_MAP")]

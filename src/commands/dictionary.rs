@@ -20,6 +20,7 @@ const SMALLER: &str = "give fewer --marginals, --levels or --entries";
 /// A table of slope distributions, from a few facets (level 0) to the smooth limit. One dictionary serves every
 /// material of a scene, at any roughness and density of facets, Beckmann or GGX. The defaults are the paper's.
 #[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Example:\n  glint-bake dictionary --levels 12 -o dictionary.glintpack")]
 pub struct Args {
     /// Pack to write
     #[arg(short, long, value_name = "PACK")]

@@ -53,6 +53,7 @@ pub enum FormatArg {
 /// Radiance and the share of a few radiance levels, filtered with GGX at the roughness of each mip, to an error bound;
 /// and the two areas that depend on view angle and roughness only.
 #[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Example:\n  glint-bake environment studio.hdr --face-size 64 -o studio.glintpack")]
 pub struct Args {
     /// Equirectangular image of linear radiance: Radiance HDR or OpenEXR
     #[arg(value_name = "IMAGE")]

@@ -1,14 +1,19 @@
 //! One file (or folder) a subcommand: its flags and what it does.
 
 mod area_light;
+mod build;
 mod deliver;
 mod demo;
 mod dictionary;
 mod environment;
 mod info;
+mod methods;
 mod ndf_maps;
+mod ninja;
 mod preview;
 mod report;
+
+pub use methods::Method;
 
 use crate::cli::{Common, LONG_VERSION, Terminal};
 use crate::exit::{Failure, HELP};
@@ -28,10 +33,10 @@ pub struct Bake {
 
 #[derive(Subcommand, Debug)]
 enum Command {
-    NdfMaps(Box<ndf_maps::Args>),
-    Dictionary(dictionary::Args),
-    Environment(environment::Args),
-    AreaLight(Box<area_light::Args>),
+    #[command(flatten)]
+    Method(Method),
+    Build(build::Args),
+    Ninja(ninja::Args),
     Preview(preview::Args),
     Report(report::Args),
     Demo(demo::Args),
@@ -41,10 +46,9 @@ enum Command {
 pub fn bake(cli: Bake) -> Result<(), Failure> {
     let terminal = Terminal::new(&cli.common);
     match cli.command {
-        Command::NdfMaps(args) => ndf_maps::run(*args, terminal),
-        Command::Dictionary(args) => dictionary::run(&args, terminal),
-        Command::Environment(args) => environment::run(&args, terminal),
-        Command::AreaLight(args) => area_light::run(*args, terminal),
+        Command::Method(method) => method.run(terminal),
+        Command::Build(args) => build::run(&args, terminal),
+        Command::Ninja(args) => ninja::run(&args, terminal),
         Command::Preview(args) => preview::run(&args, terminal),
         Command::Report(args) => report::run(&args, terminal),
         Command::Demo(args) => demo::run(&args, terminal),
@@ -53,7 +57,8 @@ pub fn bake(cli: Bake) -> Result<(), Failure> {
 
 /// The command line of glint-info.
 #[derive(Parser, Debug)]
-#[command(name = "glint-info", version, long_version = LONG_VERSION, after_help = HELP, max_term_width = 100)]
+#[command(name = "glint-info", version, long_version = LONG_VERSION, max_term_width = 100)]
+#[command(after_help = format!("Example:\n  glint-info brushed.glintpack --json\n\n{HELP}"))]
 #[command(about = "Says what a pack holds and whether it is intact")]
 pub struct Info {
     #[command(flatten)]

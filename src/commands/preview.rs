@@ -18,6 +18,7 @@ use std::path::PathBuf;
 /// One directional light, microfacets with the pack's NDF, a footprint for every pixel. A pack with two layers shows
 /// both, unless --material names one. Light and view point from the object: x right, y up, z towards the viewer.
 #[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Example:\n  glint-bake preview brushed.glintpack --size 320x320 -o preview.png")]
 pub struct Args {
     /// Pack to show
     #[arg(value_name = "PACK")]

@@ -1,6 +1,6 @@
 //! The command line and docs/CLI.md say the same: every flag, every exit code, and the help itself.
 
-use crate::support::root;
+use crate::support::{program, root, write_sky};
 use glint_bake::commands::programs;
 use glint_bake::exit::Exit;
 use std::fs;
@@ -80,6 +80,43 @@ fn help_is_as_recorded() {
         recorded == text,
         "the help differs from tests/cli/help.txt; look at it and run with GLINT_BLESS=1\n{text}"
     );
+}
+
+/// Runs the example in every command's help, in the order of the commands: some use what others wrote.
+#[test]
+fn the_examples_of_the_help_run() {
+    let folder = tempfile::tempdir().unwrap();
+    glint_bake::input::synthetic::brushed(2, 2, 1).save(folder.path().join("brushed.png")).unwrap();
+    write_sky(&folder.path().join("studio.hdr"));
+    fs::write(folder.path().join("glint.toml"), "[materials.brushed]\nmethod = 'ndf-maps'\ninput = 'brushed.png'\n")
+        .unwrap();
+    let mut path = program("glint-bake").parent().unwrap().as_os_str().to_owned();
+    path.push(":");
+    path.push(std::env::var_os("PATH").unwrap_or_default());
+    for mut command in programs() {
+        command.build();
+        let names: Vec<String> = command.get_subcommands().map(|sub| sub.get_name().to_owned()).collect();
+        let commands = match command.get_name() {
+            "glint-info" => vec![command.clone()],
+            _ => names
+                .iter()
+                .filter(|name| *name != "help")
+                .map(|name| command.find_subcommand(name).unwrap().clone())
+                .collect(),
+        };
+        for mut command in commands {
+            let help = command.render_help().to_string();
+            let example = help.split("Example:\n  ").nth(1).unwrap_or_else(|| panic!("no example in\n{help}"));
+            let example = example.lines().next().unwrap();
+            let done = std::process::Command::new("sh")
+                .args(["-c", example])
+                .current_dir(folder.path())
+                .env("PATH", &path)
+                .output()
+                .unwrap();
+            assert!(done.status.success(), "{example}: {}", String::from_utf8_lossy(&done.stderr));
+        }
+    }
 }
 
 #[test]

@@ -23,6 +23,7 @@ use std::time::Instant;
 ///
 /// Metallic paint under a scratched clear coat, and a brushed plate, from maps made by formula.
 #[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Example:\n  glint-bake demo --size 320x160 -o glint-demo")]
 pub struct Args {
     /// Folder for the pack and the picture; it is created
     #[arg(short, long, value_name = "DIR", default_value = "glint-demo")]

@@ -13,6 +13,7 @@ use std::path::PathBuf;
 /// Each MAP becomes one material of the pack. Maps are small examples (up to 128 x 128 texels, or --crop of larger
 /// ones) that the placement repeats over a surface of any size.
 #[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Example:\n  glint-bake ndf-maps brushed.png --roughness 0.05 -o brushed.glintpack")]
 pub struct Args {
     /// Normal maps: PNG, TGA, JPEG, TIFF, WebP or EXR
     #[arg(required = true, value_name = "MAP")]

@@ -17,6 +17,7 @@ use std::path::PathBuf;
 /// Bakes every example with several settings, holds tiles and footprints against the exact integral, and writes
 /// ACCURACY.md and one plot an example. Takes minutes an example; --footprints makes it shorter or more certain.
 #[derive(clap::Args, Clone, Debug)]
+#[command(after_help = "Example:\n  glint-bake report brushed.png --footprints 1 -o .")]
 pub struct Args {
     /// Examples: normal maps, whole or with --crop
     #[arg(value_name = "MAP", required = true)]
