@@ -8,6 +8,7 @@ pub mod info;
 pub mod input;
 pub mod output;
 pub mod pack;
+pub mod plan;
 pub mod preview;
 pub mod progress;
 pub mod project;

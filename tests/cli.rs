@@ -24,6 +24,8 @@ mod info;
 mod ninja;
 #[path = "cli/pipelines.rs"]
 mod pipelines;
+#[path = "cli/plan.rs"]
+mod plan;
 #[path = "cli/preview.rs"]
 mod preview;
 #[path = "cli/report.rs"]

@@ -9,8 +9,9 @@ use crate::pack;
 use crate::progress::Stages;
 use clap::ValueEnum;
 use glint_bake_core::environment::options::{DEFAULT_MIN_FACE_SIZE, LevelCount};
-use glint_bake_core::environment::{EnvironmentOptions, bake, sections};
+use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, bake, sections};
 use glint_bake_core::error::BakeError;
+use glint_bake_core::progress::Silent;
 use glint_formats::Codec;
 use glint_formats::environment::{Kernel, LevelChoice, Storage};
 use glint_formats::provenance::Provenance;
@@ -166,6 +167,19 @@ fn bake_pack(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let sections = sections::to_sections(&args.name(), &environment, codec);
     let bytes = pack::seal(&args.provenance(&loaded), sections)?;
     delivery.write(bytes, SMALLER, terminal)
+}
+
+/// A bake that is only looked at: image and environment, and the bytes that the pack would have.
+pub(super) fn draft(args: &Args) -> Result<((EnvironmentImage, Environment), u64), Failure> {
+    let options = args.options();
+    options.validate()?;
+    let loaded = load_environment(&args.input, args.run.max_memory)?;
+    let environment = bake(&loaded.image, loaded.negative_pixels, &options, &Silent)
+        .map_err(|error| Failure::bake(&args.input, &error))?;
+    let codec = if args.compress { Codec::Zstd } else { Codec::None };
+    let sections = sections::to_sections(&args.name(), &environment, codec);
+    let bytes = pack::seal(&args.provenance(&loaded), sections)?.len() as u64;
+    Ok(((loaded.image, environment), bytes))
 }
 
 impl Args {

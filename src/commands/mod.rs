@@ -10,10 +10,11 @@ mod info;
 mod methods;
 mod ndf_maps;
 mod ninja;
+mod plan;
 mod preview;
 mod report;
 
-pub use methods::Method;
+pub use methods::{Draft, Method};
 
 use crate::cli::{Common, LONG_VERSION, Terminal};
 use crate::exit::{Failure, HELP};
@@ -37,6 +38,7 @@ enum Command {
     Method(Method),
     Build(build::Args),
     Ninja(ninja::Args),
+    Plan(plan::Args),
     Preview(preview::Args),
     Report(report::Args),
     Demo(demo::Args),
@@ -49,6 +51,7 @@ pub fn bake(cli: Bake) -> Result<(), Failure> {
         Command::Method(method) => method.run(terminal),
         Command::Build(args) => build::run(&args, terminal),
         Command::Ninja(args) => ninja::run(&args, terminal),
+        Command::Plan(args) => plan::run(&args, terminal),
         Command::Preview(args) => preview::run(&args, terminal),
         Command::Report(args) => report::run(&args, terminal),
         Command::Demo(args) => demo::run(&args, terminal),

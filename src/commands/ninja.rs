@@ -3,6 +3,7 @@
 use crate::cli::Terminal;
 use crate::exit::Failure;
 use crate::output;
+use crate::plan;
 use crate::project::{Project, ninja};
 use std::path::{Path, PathBuf};
 
@@ -26,7 +27,8 @@ pub struct Args {
 
 /// Runs the subcommand.
 pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
-    let project = Project::load(&args.project)?;
+    let mut project = Project::load(&args.project)?;
+    plan::settle(&mut project, true, terminal)?;
     let Some(path) = &args.output else {
         return output::print(&ninja::manifest(&project, &args.program, Path::new("build.ninja")));
     };

@@ -27,11 +27,41 @@ pub struct Given<'a> {
 }
 
 /// What is wrong with a table.
-pub struct Wrong<'g, 'a> {
-    /// The option, when it is one.
-    pub at: Option<&'g Given<'a>>,
+pub struct Wrong {
+    /// Key of the option, when it is one.
+    pub key: Option<String>,
     /// Why.
     pub why: String,
+}
+
+/// A table as words of a command line.
+#[derive(Clone, Debug, Default)]
+pub struct Words {
+    /// Every flag with the key that it stands for, in the order of the table.
+    pub flags: Vec<(String, String)>,
+    /// What is given without a flag.
+    pub inputs: Vec<String>,
+}
+
+impl Words {
+    /// Whether the table says something of an option.
+    pub fn says(&self, key: &str) -> bool {
+        self.flags.iter().any(|(other, _)| other == key)
+    }
+
+    /// The same with a value, none for a flag, for an option that the table says nothing of.
+    pub fn with(&self, key: &str, value: &str) -> Words {
+        let mut words = self.clone();
+        if !self.says(key) {
+            words.flags.push((key.to_owned(), flag(key, value)));
+        }
+        words
+    }
+}
+
+/// A flag as it is typed; without a value when that is empty.
+pub fn flag(key: &str, value: &str) -> String {
+    if value.is_empty() { format!("--{key}") } else { format!("--{key}={value}") }
 }
 
 /// The commands that bake, as a project sees them.
@@ -63,51 +93,49 @@ impl Methods {
         self.command.get_subcommands().map(Command::get_name)
     }
 
-    /// The target that a table of options describes.
+    /// A table of options as words.
     ///
     /// # Errors
-    /// The first option that is wrong, as the command itself would say it.
-    pub fn target<'g, 'a>(
-        &mut self,
-        name: &str,
-        method: &str,
-        given: &'g [Given<'a>],
-        folder: &Path,
-        pack: PathBuf,
-    ) -> Result<Target, Wrong<'g, 'a>> {
-        let (mut arguments, mut positional) = (Vec::new(), Vec::new());
+    /// The first key whose value no flag can have.
+    pub fn words(&self, method: &str, given: &[Given<'_>], folder: &Path) -> Result<Words, Wrong> {
+        let mut words = Words::default();
         for option in given {
-            let wrong = |why: String| Wrong { at: Some(option), why };
-            let values = self.values(method, option.entry, folder).map_err(wrong)?;
-            match option.entry.key {
-                INPUT => positional = values,
-                key => arguments.extend(values.into_iter().map(|value| match value {
-                    Value::Flag => format!("--{key}"),
-                    Value::Text(text) => format!("--{key}={text}"),
-                })),
+            let key = option.entry.key;
+            let wrong = |why: String| Wrong { key: Some(key.to_owned()), why };
+            for value in self.values(method, option.entry, folder).map_err(wrong)? {
+                match (key, value) {
+                    (INPUT, Value::Text(text)) => words.inputs.push(text),
+                    (_, Value::Text(text)) => words.flags.push((key.to_owned(), format!("--{key}={text}"))),
+                    (_, Value::Flag) => words.flags.push((key.to_owned(), format!("--{key}"))),
+                }
             }
         }
-        if positional.is_empty() && self.positional(method).is_some() {
+        if words.inputs.is_empty() && self.positional(method).is_some() {
             return Err(Wrong {
-                at: None,
+                key: None,
                 why: "expected the files to bake as input = \"FILE\", found no input".into(),
             });
         }
-        let mut all = vec![format!("--output={}", pack.display())];
-        all.append(&mut arguments);
-        if !positional.is_empty() {
-            all.push("--".into());
-            all.extend(positional.into_iter().map(|value| match value {
-                Value::Text(text) => text,
-                Value::Flag => String::new(),
-            }));
+        Ok(words)
+    }
+
+    /// The target that words describe.
+    ///
+    /// # Errors
+    /// The first option that is wrong, as the command itself would say it.
+    pub fn target(&mut self, name: &str, method: &str, words: &Words, pack: PathBuf) -> Result<Target, Wrong> {
+        let mut arguments = vec![format!("--output={}", pack.display())];
+        arguments.extend(words.flags.iter().map(|(_, flag)| flag.clone()));
+        if !words.inputs.is_empty() {
+            arguments.push("--".into());
+            arguments.extend(words.inputs.iter().cloned());
         }
-        let words = ["glint-bake", method].into_iter().map(str::to_owned).chain(all.iter().cloned());
-        let parsed = self.command.try_get_matches_from_mut(words);
+        let line = ["glint-bake", method].into_iter().map(str::to_owned).chain(arguments.iter().cloned());
+        let parsed = self.command.try_get_matches_from_mut(line);
         let fault = |error: &clap::Error| {
             let why = reason(error);
             let named = |key: &str| why.contains(&format!("--{key} ")) || why.contains(&format!("--{key}'"));
-            Wrong { at: given.iter().find(|option| named(option.entry.key)), why }
+            Wrong { key: words.flags.iter().map(|(key, _)| key).find(|key| named(key)).cloned(), why }
         };
         let matches = parsed.map_err(|error| fault(&error))?;
         let bake = Method::from_arg_matches(&matches).map_err(|error| fault(&error))?;
@@ -118,9 +146,10 @@ impl Methods {
             inputs: self.inputs(method, matches),
             report: path_of(matches, "report"),
             pack,
+            planned: None,
             bake,
             method: method.to_owned(),
-            arguments: all,
+            arguments,
         })
     }
 
@@ -164,6 +193,11 @@ impl Methods {
             texts = texts.into_iter().map(|text| folder_join(folder, &text)).collect();
         }
         Ok(texts.into_iter().map(Value::Text).collect())
+    }
+
+    /// Whether a key is one of a method's; `method` and `input` are everybody's.
+    pub fn knows(&self, method: &str, key: &str) -> bool {
+        key == INPUT || key == "method" || self.flag(method, key).is_some()
     }
 
     fn args(&self, method: &str) -> impl Iterator<Item = &Arg> {

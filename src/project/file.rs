@@ -5,10 +5,12 @@
 //! [defaults.ndf-maps]             # options of every material of a method
 //! [materials.NAME]                # method, input, and options of the method
 //! [environments.NAME]             # the same, with method = "environment"
+//! [scene]                         # what tables with a distance or an alpha are planned for
 //! ```
 
-use super::arguments::{Given, Methods, folder_join};
-use super::{Project, Target};
+use super::arguments::{Given, Methods, Wrong, folder_join};
+use super::scene::{self, LOBE_KEYS, VIEW_KEYS};
+use super::{Planned, Project, Seen, Target, Way};
 use crate::output::folder_of;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
@@ -18,6 +20,12 @@ use toml::de::{DeTable, DeValue};
 const OUTPUT: &str = "packs";
 /// Method of what stands under `environments`.
 const ENVIRONMENT: &str = "environment";
+/// The group of such tables.
+const ENVIRONMENTS: &str = "environments";
+/// Methods that a scene's lights choose from.
+pub const NDF_MAPS: &str = "ndf-maps";
+/// The other one.
+pub const AREA_LIGHT: &str = "area-light";
 
 /// A key with its value and its place in the file.
 #[derive(Clone, Copy)]
@@ -46,6 +54,16 @@ impl Problems<'_> {
             self.found.push(message);
         }
     }
+
+    /// What is wrong with an option of a table, or with the table `name` that begins at `at`.
+    fn of_option(&mut self, wrong: &Wrong, given: &[Given<'_>], at: usize, name: &str) {
+        match given.iter().find(|option| Some(option.entry.key) == wrong.key.as_deref()) {
+            Some(option) => {
+                self.push(option.entry.at, &format!("{}.{}", option.table, option.entry.key), &wrong.why);
+            }
+            None => self.push(at, name, &wrong.why),
+        }
+    }
 }
 
 /// The project that `text` is.
@@ -64,82 +82,167 @@ pub fn parse(path: &Path, text: &str) -> Result<Project, Vec<String>> {
     };
     let folder = folder_of(path);
     let mut output = OUTPUT.to_owned();
-    let mut groups: [Vec<Entry<'_>>; 3] = Default::default();
+    let (mut defaults, mut tables, mut scene) = (Vec::new(), Vec::new(), None);
     for entry in entries(&document) {
         match (entry.key, entry.value) {
             ("output", DeValue::String(value)) if !value.is_empty() => output = value.to_string(),
             ("output", _) => problems.push(entry.at, "output", "expected the name of a folder"),
-            ("defaults", DeValue::Table(table)) => groups[0] = entries(table),
-            ("materials", DeValue::Table(table)) => groups[1] = entries(table),
-            ("environments", DeValue::Table(table)) => groups[2] = entries(table),
-            ("defaults" | "materials" | "environments", _) => {
+            ("scene", DeValue::Table(table)) => match scene::scene(entry, &entries(table)) {
+                Ok(found) => scene = Some(found),
+                Err((wrong, why)) => problems.push(wrong.at, &dotted("scene", wrong.key), why),
+            },
+            ("defaults", DeValue::Table(table)) => defaults = entries(table),
+            ("materials", DeValue::Table(table)) => tables.extend(entries(table).into_iter().map(|e| ("materials", e))),
+            (ENVIRONMENTS, DeValue::Table(table)) => {
+                tables.extend(entries(table).into_iter().map(|e| (ENVIRONMENTS, e)))
+            }
+            ("scene" | "defaults" | "materials" | ENVIRONMENTS, _) => {
                 problems.push(entry.at, entry.key, "expected tables, as in [materials.NAME]");
             }
-            (key, _) => problems.push(entry.at, key, "expected output, defaults, materials or environments"),
+            (key, _) => problems.push(entry.at, key, "expected output, defaults, materials, environments or scene"),
         }
     }
+    tables.sort_by_key(|(_, entry)| entry.at);
     let output = PathBuf::from(folder_join(folder, &output));
-    let mut methods = Methods::new();
-    let [defaults, materials, environments] = groups;
-    for entry in &defaults {
-        if !methods.names().any(|name| name == entry.key) {
-            let known: Vec<&str> = methods.names().collect();
-            problems.push(entry.at, &format!("defaults.{}", entry.key), &format!("expected {}", known.join(", ")));
-        } else if entry.value.as_table().is_none() {
-            problems.push(entry.at, &format!("defaults.{}", entry.key), "expected a table of options");
+    let mut reader = Reader {
+        problems,
+        methods: Methods::new(),
+        defaults,
+        folder,
+        project: Project { path: path.to_owned(), output, targets: Vec::new(), scene, planned: Vec::new() },
+    };
+    reader.check_defaults();
+    for (group, entry) in tables {
+        reader.table(group, entry);
+    }
+    if reader.problems.found.is_empty() { Ok(reader.project) } else { Err(reader.problems.found) }
+}
+
+/// Reads one table after another.
+struct Reader<'a> {
+    problems: Problems<'a>,
+    methods: Methods,
+    defaults: Vec<Entry<'a>>,
+    folder: &'a Path,
+    project: Project,
+}
+
+impl<'a> Reader<'a> {
+    fn known_methods(&self) -> String {
+        self.methods.names().collect::<Vec<_>>().join(", ")
+    }
+
+    fn check_defaults(&mut self) {
+        for entry in &self.defaults {
+            let key = format!("defaults.{}", entry.key);
+            if !self.methods.names().any(|name| name == entry.key) {
+                self.problems.push(entry.at, &key, &format!("expected {}", self.known_methods()));
+            } else if entry.value.as_table().is_none() {
+                self.problems.push(entry.at, &key, "expected a table of options");
+            }
         }
     }
-    let mut all: Vec<(&str, Entry<'_>)> = Vec::new();
-    all.extend(materials.into_iter().map(|entry| ("materials", entry)));
-    all.extend(environments.into_iter().map(|entry| ("environments", entry)));
-    all.sort_by_key(|(_, entry)| entry.at);
 
-    let mut targets: Vec<Target> = Vec::new();
-    for (group, entry) in all {
-        let table_name = format!("{group}.{}", entry.key);
-        let taken = targets.iter().find(|target| target.name.to_lowercase() == entry.key.to_lowercase());
-        if let Some(why) = bad_name(entry.key, taken) {
-            problems.push(entry.at, &table_name, &why);
-            continue;
+    fn table(&mut self, group: &str, entry: Entry<'a>) {
+        let name = format!("{group}.{}", entry.key);
+        let mut taken = self.project.names();
+        if let Some(why) = bad_name(entry.key, taken.find(|taken| taken.to_lowercase() == entry.key.to_lowercase())) {
+            drop(taken);
+            return self.problems.push(entry.at, &name, &why);
         }
+        drop(taken);
         let DeValue::Table(table) = entry.value else {
-            problems.push(entry.at, &table_name, "expected a table of options");
-            continue;
+            return self.problems.push(entry.at, &name, "expected a table of options");
         };
         let own = entries(table);
-        let method = match own.iter().find(|own| own.key == "method").map(|own| (own, own.value)) {
-            None if group == "environments" => ENVIRONMENT,
-            Some((_, DeValue::String(value))) if methods.names().any(|name| name == value) => value.as_ref(),
-            found => {
-                let known: Vec<&str> = methods.names().collect();
-                let at = found.map_or(entry.at, |(own, _)| own.at);
-                problems.push(at, &format!("{table_name}.method"), &format!("expected {}", known.join(", ")));
-                continue;
+        let seen = match (group, self.project.scene.is_some()) {
+            (_, false) => Ok(None),
+            (ENVIRONMENTS, true) => scene::lobes(entry, &own).map(|lobes| lobes.map(Seen::Sky)),
+            (_, true) => scene::view(entry, &own).map(|view| view.map(Seen::Surface)),
+        };
+        let seen = match seen {
+            Ok(seen) => seen,
+            Err((wrong, why)) if wrong.at == entry.at => return self.problems.push(entry.at, &name, why),
+            Err((wrong, why)) => return self.problems.push(wrong.at, &dotted(&name, wrong.key), why),
+        };
+        let said = own.iter().find(|own| own.key == "method");
+        let method = match said.map(|said| said.value) {
+            None if group == ENVIRONMENTS => Some(ENVIRONMENT),
+            None if seen.is_some() => None,
+            Some(DeValue::String(value)) if self.methods.names().any(|name| name == value) => Some(value.as_ref()),
+            _ => {
+                let at = said.map_or(entry.at, |said| said.at);
+                return self.problems.push(at, &dotted(&name, "method"), &format!("expected {}", self.known_methods()));
             }
         };
+        match seen {
+            None => {
+                if let Some(method) = method {
+                    let way = self.way(entry, &name, method, entry.key.to_owned(), &own, &[]);
+                    self.project.targets.extend(way.map(|(_, target)| target));
+                }
+            }
+            Some(seen) => self.planned(entry, &name, method, seen, &own),
+        }
+    }
+
+    /// A table that is planned for the scene: every way in which it may be baked.
+    fn planned(&mut self, entry: Entry<'a>, table: &str, method: Option<&str>, seen: Seen, own: &[Entry<'a>]) {
+        let (methods, keys): (Vec<&str>, &[&str]) = match (&seen, method) {
+            (Seen::Sky(_), Some(ENVIRONMENT)) => (vec![ENVIRONMENT], &LOBE_KEYS),
+            (Seen::Surface(_), None) => (vec![NDF_MAPS, AREA_LIGHT], &VIEW_KEYS),
+            (Seen::Surface(_), Some(NDF_MAPS)) => (vec![NDF_MAPS], &VIEW_KEYS),
+            (Seen::Surface(_), Some(AREA_LIGHT)) => (vec![AREA_LIGHT], &VIEW_KEYS),
+            _ => {
+                let why = "nothing to plan for this method; leave out what says how it is seen";
+                return self.problems.push(entry.at, table, why);
+            }
+        };
+        let mut ways = Vec::new();
+        for method in &methods {
+            // Of several methods, each takes the options that it knows; what none knows is a mistake of the first.
+            let knows = |own: &&Entry<'a>| self.methods.knows(method, own.key);
+            let foreign = |own: &&Entry<'a>| methods.iter().any(|other| self.methods.knows(other, own.key));
+            let own: Vec<Entry<'a>> = own.iter().filter(|own| knows(own) || !foreign(own)).copied().collect();
+            let Some((way, _)) = self.way(entry, table, method, entry.key.to_owned(), &own, keys) else { return };
+            ways.push(way);
+        }
+        self.project.planned.push(Planned { name: entry.key.to_owned(), seen, ways });
+    }
+
+    /// A table, without `skipped` keys, as a bake of one method.
+    fn way(
+        &mut self,
+        entry: Entry<'a>,
+        table: &str,
+        method: &str,
+        name: String,
+        own: &[Entry<'a>],
+        skipped: &[&str],
+    ) -> Option<(Way, Target)> {
         let mut given: Vec<Given<'_>> = Vec::new();
-        for default in defaults.iter().filter(|default| default.key == method) {
+        for default in self.defaults.iter().filter(|default| default.key == method) {
             let Some(table) = default.value.as_table() else { continue };
             let others = entries(table).into_iter().filter(|other| own.iter().all(|own| own.key != other.key));
             given.extend(others.map(|entry| Given { entry, table: format!("defaults.{method}") }));
         }
-        let own = own.into_iter().filter(|own| own.key != "method");
-        given.extend(own.map(|entry| Given { entry, table: table_name.clone() }));
-        let pack = output.join(format!("{}.glintpack", entry.key));
-        match methods.target(entry.key, method, &given, folder, pack) {
-            Ok(target) => targets.push(target),
-            Err(wrong) => match wrong.at {
-                Some(given) => {
-                    problems.push(given.entry.at, &format!("{}.{}", given.table, given.entry.key), &wrong.why);
-                }
-                None => problems.push(entry.at, &table_name, &wrong.why),
-            },
+        let own = own.iter().filter(|own| own.key != "method" && !skipped.contains(&own.key));
+        given.extend(own.map(|entry| Given { entry: *entry, table: table.to_owned() }));
+        let pack = self.project.pack(&name);
+        let words = self.methods.words(method, &given, self.folder);
+        let target = words.and_then(|words| Ok((self.methods.target(&name, method, &words, pack)?, words)));
+        match target {
+            Ok((target, words)) => Some((Way { method: method.to_owned(), words }, target)),
+            Err(wrong) => {
+                self.problems.of_option(&wrong, &given, entry.at, table);
+                None
+            }
         }
     }
-    if !problems.found.is_empty() {
-        return Err(problems.found);
-    }
-    Ok(Project { path: path.to_owned(), output, targets })
+}
+
+fn dotted(table: &str, key: &str) -> String {
+    if table == key { key.to_owned() } else { format!("{table}.{key}") }
 }
 
 /// Keys of a table in the order of the file.
@@ -154,14 +257,12 @@ fn entries<'a>(table: &'a DeTable<'a>) -> Vec<Entry<'a>> {
 }
 
 /// Why a name cannot be that of a file beside the others.
-fn bad_name(name: &str, taken: Option<&Target>) -> Option<String> {
+fn bad_name(name: &str, taken: Option<&str>) -> Option<String> {
     const FORBIDDEN: &[char] = &['/', '\\', ':', '*', '?', '"', '<', '>', '|'];
     if name.is_empty() || name.starts_with('.') || name.chars().any(|c| c.is_control() || FORBIDDEN.contains(&c)) {
         return Some(
             "a pack is named after it; expected a name without folders or characters that files cannot have".into(),
         );
     }
-    taken.map(|other| {
-        format!("a pack is named after it, and {:?} is there already; give each a name of its own", other.name)
-    })
+    taken.map(|other| format!("a pack is named after it, and {other:?} is there already; give each a name of its own"))
 }

@@ -1,6 +1,6 @@
 //! A project: a TOML file that names materials and environments, each of which becomes a pack.
 //!
-//! [`file`] reads the tables, [`arguments`] turns each into the command line that it stands for, [`freshness`] says
+//! [`file`] reads the tables, [`scene`] what the camera sees of them, [`arguments`] turns each into the command line that it stands for, [`freshness`] says
 //! whether its pack is up to date, by the [`record`] that the last build left, and [`ninja`] writes it for another tool.
 
 pub mod arguments;
@@ -8,10 +8,13 @@ pub mod file;
 pub mod freshness;
 pub mod ninja;
 pub mod record;
+pub mod scene;
 pub mod stamp;
 
 use crate::commands::Method;
 use crate::exit::Failure;
+use arguments::Words;
+use scene::{Lobes, Scene, View};
 use std::path::{Path, PathBuf};
 
 /// A project, checked as far as it can be without reading its inputs.
@@ -21,8 +24,41 @@ pub struct Project {
     pub path: PathBuf,
     /// Folder of the packs.
     pub output: PathBuf,
-    /// What is to be built, in the order of the file.
+    /// What is to be built, in the order of the file; what was planned comes last.
     pub targets: Vec<Target>,
+    /// The scene that the others are planned for.
+    pub scene: Option<Scene>,
+    /// What has to be planned before it can be built.
+    pub planned: Vec<Planned>,
+}
+
+/// A table that says how it is seen, so that its options can be planned.
+#[derive(Clone, Debug)]
+pub struct Planned {
+    /// Name of the table.
+    pub name: String,
+    /// How it is seen.
+    pub seen: Seen,
+    /// Bakes that may come of it.
+    pub ways: Vec<Way>,
+}
+
+/// How something is seen.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Seen {
+    /// A surface.
+    Surface(View),
+    /// An environment.
+    Sky(Lobes),
+}
+
+/// A bake whose options are not all chosen.
+#[derive(Clone, Debug)]
+pub struct Way {
+    /// Method.
+    pub method: String,
+    /// Options that are.
+    pub words: Words,
 }
 
 /// One pack to build.
@@ -42,6 +78,8 @@ pub struct Target {
     pub options: Vec<(String, Vec<String>)>,
     /// Files that the pack is made from.
     pub inputs: Vec<PathBuf>,
+    /// Number of the table among those that are planned, when it is one.
+    pub planned: Option<usize>,
     /// The report that is written beside the pack, when one is wanted.
     pub report: Option<PathBuf>,
 }
@@ -83,6 +121,17 @@ impl Project {
             self.targets.retain(|target| names.contains(&target.name));
         }
         Ok(())
+    }
+
+    /// Names of all tables that were read.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        let targets = self.targets.iter().map(|target| target.name.as_str());
+        targets.chain(self.planned.iter().map(|planned| planned.name.as_str()))
+    }
+
+    /// Where a pack lies.
+    pub fn pack(&self, name: &str) -> PathBuf {
+        self.output.join(format!("{name}.glintpack"))
     }
 
     /// Folder of what is remembered between builds.

@@ -19,9 +19,11 @@ pub fn manifest(project: &Project, program: &str, manifest: &Path) -> String {
         comment(&path_text(&project.path)),
         value(&shell(program)),
     );
+    // What is planned depends on what the maps hold.
+    let planned: String = crate::plan::inputs(project).iter().map(|input| format!(" {}", path(input))).collect();
     let own = [path_text(&project.path), format!("--output={}", path_text(manifest)), format!("--program={program}")];
     text += &format!(
-        "build {}: manifest {}\n  arguments = {}\n\n",
+        "build {}: manifest {}{planned}\n  arguments = {}\n\n",
         path(manifest),
         path(&project.path),
         value(&command(&own))

@@ -115,3 +115,24 @@ fn report_depfile_and_json_are_written_and_quiet_is_quiet() {
     assert_eq!(fs::read_to_string(folder.path().join("r.json")).unwrap(), printed);
     assert_eq!(fs::read_to_string(folder.path().join("out.d")).unwrap(), "out.glintpack: \\\n  scratches.png\n");
 }
+
+#[test]
+fn fine_mips_can_be_left_out() {
+    use glint_formats::area_light::NORMALS;
+    use glint_formats::{Limits, Pack};
+    let folder = maps();
+    let normals = |flags: &[&str]| {
+        bake(folder.path(), &[&DEFAULT[..], flags].concat()).ok();
+        info(folder.path(), &["out.glintpack", "--verify"]).ok();
+        let bytes = fs::read(folder.path().join("out.glintpack")).unwrap();
+        let pack = Pack::from_bytes(bytes, &Limits::default()).unwrap();
+        pack.payload(pack.find(NORMALS, "scratches").unwrap()).unwrap().to_vec()
+    };
+    // 16 × 8, 8 × 4, 4 × 2, 2 × 1, 1 × 1 texels of 8 bytes.
+    let (all, some, last) = (normals(&[]), normals(&["--skip-mips", "2"]), normals(&["--skip-mips", "14"]));
+    assert_eq!((all.len(), some.len(), last.len()), (8 * 171, 8 * 11, 8));
+    assert!(all.ends_with(&some) && all.ends_with(&last));
+    assert_eq!(bake(folder.path(), &[&DEFAULT[..], &["--skip-mips", "15"]].concat()).code, 2);
+    let done = bake(folder.path(), &[&DEFAULT[..], &["--skip-mips", "1", "-n"]].concat()).ok();
+    assert!(done.stderr.contains("8 × 4 texels, 4 mips, 0.3 KiB"), "{}", done.stderr);
+}

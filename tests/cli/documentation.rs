@@ -90,6 +90,9 @@ fn the_examples_of_the_help_run() {
     write_sky(&folder.path().join("studio.hdr"));
     fs::write(folder.path().join("glint.toml"), "[materials.brushed]\nmethod = 'ndf-maps'\ninput = 'brushed.png'\n")
         .unwrap();
+    let scene = "[scene]\nlights = ['point']\nerror = 1\n[materials.far]\ninput = 'brushed.png'\nroughness = 0.2\n\
+        distance = [9, 9]\ntexels-per-metre = 900\n";
+    fs::write(folder.path().join("scene.toml"), scene).unwrap();
     let mut path = program("glint-bake").parent().unwrap().as_os_str().to_owned();
     path.push(":");
     path.push(std::env::var_os("PATH").unwrap_or_default());

@@ -101,6 +101,11 @@ fn the_page_shows_what_the_example_says() {
     let page = fs::read_to_string(root().join("docs/PIPELINES.md")).unwrap();
     let project = fs::read_to_string(root().join("docs/examples/glint.toml")).unwrap();
     let block = page.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+    let scene = fs::read_to_string(root().join("docs/examples/scene.toml")).unwrap();
+    let of_scene = page.split("```toml\n").nth(2).unwrap().split("```").next().unwrap();
+    for line in of_scene.lines().map(|line| line.split('#').next().unwrap().trim()).filter(|line| !line.is_empty()) {
+        assert!(scene.contains(line), "{line}");
+    }
     for line in block.lines().map(|line| line.split('#').next().unwrap().trim()).filter(|line| !line.is_empty()) {
         assert!(project.contains(line), "{line}");
     }

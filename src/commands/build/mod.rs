@@ -5,6 +5,7 @@ mod work;
 use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
 use crate::output;
+use crate::plan::{self, Fit};
 use crate::project::freshness::Freshness;
 use crate::project::{Project, Target};
 use clap::builder::RangedU64ValueParser;
@@ -51,7 +52,6 @@ const MOST_IN_FLIGHT: usize = 4;
 /// Runs the subcommand.
 pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let mut project = Project::load(&args.project)?;
-    project.select(&args.only)?;
     if let Some(threads) = args.threads {
         // Bakes run on the pool of the whole process, so that all packs share its threads.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build_global();
@@ -59,6 +59,8 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
             Failure::new(Exit::Unexpected, format!("{threads} threads cannot be started: {e}; give fewer"))
         })?;
     }
+    let fit = plan::settle(&mut project, !args.check && !args.dry_run, terminal)?;
+    project.select(&args.only)?;
     let states: Vec<_> = project.targets.par_iter().map(|target| Freshness::of(&project, target)).collect();
     if args.check {
         return check(&project, &states, terminal);
@@ -73,7 +75,10 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     if let Some(path) = &args.depfile {
         output::write(path, depfile(&project).as_bytes())?;
     }
-    Ok(())
+    match fit {
+        Fit::Kept => Ok(()),
+        Fit::Nearest => Err(plan::beyond(&project)),
+    }
 }
 
 /// Makes the folders, and finds out whether they take files.
