@@ -1,4 +1,4 @@
-//! What the programs share: flags, files, progress, reports, the preview.
+//! What the programs share: flags, files, progress, reports, projects, the preview.
 
 pub mod canvas;
 pub mod cli;
@@ -8,5 +8,7 @@ pub mod info;
 pub mod input;
 pub mod output;
 pub mod pack;
+pub mod plan;
 pub mod preview;
 pub mod progress;
+pub mod project;

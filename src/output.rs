@@ -4,6 +4,7 @@ use crate::exit::{Exit, Failure};
 use glint_formats::{WriteOutcome, write_atomic};
 use std::io::{ErrorKind, Write, stdout};
 use std::path::{Path, PathBuf};
+use std::sync::RwLock;
 
 /// Prints to standard output. A reader that has gone, as `head` does, is no failure.
 pub fn print(text: &str) -> Result<(), Failure> {
@@ -15,8 +16,17 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
+/// Held while a temporary file lies in somebody's folder.
+static WRITING: RwLock<()> = RwLock::new(());
+
+/// Waits for files that are being written and lets no further ones begin. For a process that is about to end.
+pub fn stop_writing() {
+    std::mem::forget(WRITING.write());
+}
+
 /// Writes a file whole or not at all; one that has these bytes already is left alone.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<WriteOutcome, Failure> {
+    let _writing = WRITING.read();
     write_atomic(path, bytes).map_err(|e| Failure::io(path, "cannot be written", &e))
 }
 
@@ -44,6 +54,7 @@ pub fn check_writable(path: &Path) -> Result<(), Failure> {
     if !folder.is_dir() {
         return refuse(format!("cannot be written: the folder {} does not exist; create it first", folder.display()));
     }
+    let _writing = WRITING.read();
     // Permission bits do not tell all (read-only mounts, access lists), so a file is made and removed.
     match tempfile::Builder::new().prefix(".glint-probe-").tempfile_in(folder) {
         Ok(probe) => probe.close().map_err(|e| Failure::io(folder, "cannot be written", &e)),

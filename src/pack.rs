@@ -52,7 +52,7 @@ pub fn check(
             map.height
         )));
     }
-    let needed = tile_count(map.width, map.height) * PAPER_TILE_BYTES;
+    let needed = tile_count(map.width, map.height, options.min_tile) * PAPER_TILE_BYTES;
     if options.storage == DensityStorage::PaperF32 && needed > max_memory {
         return Err(BakeError::LimitExceeded(format!(
             "the paper's layout needs {needed} bytes, the limit is {max_memory}; raise --max-memory or give --storage u8"
@@ -61,9 +61,12 @@ pub fn check(
     placement::bake(map, options.roughness, placement).map(|_| ())
 }
 
-/// Tiles of all levels of an example.
-pub fn tile_count(width: u32, height: u32) -> u64 {
-    bake::levels_of(width, height).iter().map(|level| u64::from(level.tiles_x) * u64::from(level.tiles_y)).sum()
+/// Tiles of all levels of an example, from tiles of `min_tile` texels on.
+pub fn tile_count(width: u32, height: u32, min_tile: u32) -> u64 {
+    bake::levels_from(width, height, min_tile)
+        .iter()
+        .map(|level| u64::from(level.tiles_x) * u64::from(level.tiles_y))
+        .sum()
 }
 
 /// The bytes of a pack of materials.

@@ -2,9 +2,29 @@
 
 use crate::cli::Terminal;
 use glint_bake_core::progress::Progress;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, stderr};
-use std::sync::Mutex;
+use std::sync::{LazyLock, Mutex};
+
+/// Every bar of this process, so that several pieces of work and messages between them share one terminal.
+pub fn bars() -> &'static MultiProgress {
+    static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
+    &BARS
+}
+
+/// A bar below all others for `total` parts of a larger piece of work; hidden where no bars are wanted.
+pub fn overall(terminal: Terminal, what: &str, total: u64) -> ProgressBar {
+    if !terminal.progress() || !stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    bars()
+        .add(ProgressBar::new(total).with_style(style("{msg:25} {wide_bar} {pos}/{len} {elapsed:>4}")))
+        .with_message(what.to_owned())
+}
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
+}
 
 /// Shows one stage after another.
 pub struct Stages {
@@ -30,11 +50,15 @@ impl Progress for Stages {
             return;
         }
         if !stderr().is_terminal() {
-            return self.terminal.say(&format!("{stage}: {total} steps"));
+            return self.terminal.step(&format!("{stage}: {total} steps"));
         }
-        let style = ProgressStyle::with_template("{msg:12} {wide_bar} {pos}/{len} {eta:>4}")
-            .unwrap_or_else(|_| ProgressStyle::default_bar());
-        let new = ProgressBar::new(total).with_style(style).with_message(stage.to_owned());
+        let template = match self.terminal.label() {
+            "" => "{msg:12} {wide_bar} {pos}/{len} {eta:>4}",
+            _ => "{prefix:12.12} {msg:12} {wide_bar} {pos}/{len} {eta:>4}",
+        };
+        let new = ProgressBar::new(total).with_style(style(template)).with_prefix(self.terminal.label());
+        // The bar of the whole stays below.
+        let new = bars().insert_from_back(1, new.with_message(stage.to_owned()));
         self.with_bar(|bar| *bar = Some(new));
     }
 
@@ -50,6 +74,7 @@ impl Progress for Stages {
         self.with_bar(|bar| {
             if let Some(bar) = bar.take() {
                 bar.finish_and_clear();
+                bars().remove(&bar);
             }
         });
     }

@@ -6,6 +6,10 @@ mod area_light;
 mod bad_input;
 #[path = "cli/bake.rs"]
 mod bake;
+#[path = "cli/build.rs"]
+mod build;
+#[path = "cli/build_real.rs"]
+mod build_real;
 #[path = "cli/compare.rs"]
 mod compare;
 #[path = "cli/damage.rs"]
@@ -24,8 +28,16 @@ mod export;
 mod generate;
 #[path = "cli/info.rs"]
 mod info;
+#[path = "cli/ninja.rs"]
+mod ninja;
+#[path = "cli/pipelines.rs"]
+mod pipelines;
+#[path = "cli/plan.rs"]
+mod plan;
 #[path = "cli/preview.rs"]
 mod preview;
+#[path = "cli/projects.rs"]
+mod projects;
 #[path = "cli/read_pack.rs"]
 mod read_pack;
 #[path = "cli/report.rs"]

@@ -47,7 +47,7 @@ const CROPS_32: [(&str, u32, u32); 6] = [
 ];
 
 fn baked(map: &NormalMap, roughness: f64, max_error: f64) -> BakedNdfMaps {
-    let options = NdfMapsOptions { roughness, max_error, storage: DensityStorage::SqrtU8 };
+    let options = NdfMapsOptions { roughness, max_error, storage: DensityStorage::SqrtU8, ..NdfMapsOptions::default() };
     bake::bake(map, &options, &Silent).unwrap()
 }
 

@@ -15,7 +15,7 @@ mod resource;
 mod section;
 mod structure;
 
-pub use atomic::{WriteOutcome, write_atomic};
+pub use atomic::{TEMPORARY_PREFIX, TEMPORARY_SUFFIX, WriteOutcome, write_atomic};
 pub use builder::PackBuilder;
 pub use entry::{ENTRY_BYTES, SectionEntry};
 pub use four_cc::FourCc;

@@ -97,7 +97,7 @@ pub struct NdfMapsParams {
     pub intrinsic_roughness: f32,
     /// How density texels are stored.
     pub storage: DensityStorage,
-    /// Levels, finest (tile of 2 texels) first; the last has one tile.
+    /// Levels, finest first; the last has one tile. Tiles begin at 2 texels unless finer ones were left out.
     pub levels: Vec<Level>,
     /// E₁ that was asked of tiles on average.
     pub max_error: f32,

@@ -1,6 +1,8 @@
 //! Flags that every program has, and how messages look on a terminal.
 
+use crate::progress;
 use clap::{Args, ValueEnum};
+use std::borrow::Cow;
 use std::io::{IsTerminal, Write, stderr};
 use std::sync::OnceLock;
 
@@ -53,6 +55,8 @@ pub struct Terminal {
     verbose: bool,
     colour: bool,
     progress: bool,
+    /// The part of a larger piece of work that speaks. Labels live as long as the process, so that this stays Copy.
+    label: Option<&'static str>,
 }
 
 /// The terminal of this process once its flags are known, for messages after the program has returned.
@@ -73,14 +77,25 @@ impl Terminal {
             ProgressWhen::Never => false,
             ProgressWhen::Always => true,
         };
-        let terminal = Terminal { quiet: common.quiet, verbose: common.verbose, colour, progress };
+        let terminal = Terminal { quiet: common.quiet, verbose: common.verbose, colour, progress, label: None };
         *PROCESS.get_or_init(|| terminal)
     }
 
     /// The one made from this process's flags; plain before they are known.
     pub fn from_process() -> Terminal {
-        let plain = Terminal { quiet: false, verbose: false, colour: false, progress: false };
+        let plain = Terminal { quiet: false, verbose: false, colour: false, progress: false, label: None };
         PROCESS.get().copied().unwrap_or(plain)
+    }
+
+    /// The same for one part of a larger piece of work: messages begin with the part's name, and what was done is a
+    /// detail.
+    pub fn of_part(&self, name: &str) -> Terminal {
+        Terminal { label: Some(String::leak(name.to_owned())), ..*self }
+    }
+
+    /// Name of the part that speaks; empty for the whole.
+    pub fn label(&self) -> &'static str {
+        self.label.unwrap_or_default()
     }
 
     /// Whether progress is shown.
@@ -107,19 +122,36 @@ impl Terminal {
 
     /// What was done.
     pub fn say(&self, message: &str) {
-        if !self.quiet {
+        if self.label.is_some() {
+            self.detail(message);
+        } else if !self.quiet {
             write_line(message);
+        }
+    }
+
+    /// A step of progress where no bar can be shown.
+    pub fn step(&self, message: &str) {
+        if !self.quiet {
+            write_line(&self.part_of(message));
         }
     }
 
     /// What only `--verbose` shows.
     pub fn detail(&self, message: &str) {
         if self.verbose {
-            write_line(message);
+            write_line(&self.part_of(message));
+        }
+    }
+
+    fn part_of<'a>(&self, message: &'a str) -> Cow<'a, str> {
+        match self.label {
+            Some(label) => Cow::Owned(format!("{label}: {}", message.replace('\n', &format!("\n{label}: ")))),
+            None => Cow::Borrowed(message),
         }
     }
 
     fn labelled(&self, label: &str, ansi: &str, message: &str) {
+        let message = self.part_of(message);
         if self.colour {
             write_line(&format!("\x1b[1;{ansi}m{label}:\x1b[0m {message}"));
         } else {
@@ -128,7 +160,7 @@ impl Terminal {
     }
 }
 
-/// A message that nobody can read is not worth a failure.
+/// A message that nobody can read is not worth a failure. Bars make room for it.
 fn write_line(message: &str) {
-    let _ = writeln!(stderr(), "{message}");
+    let _ = progress::bars().suspend(|| writeln!(stderr(), "{message}"));
 }

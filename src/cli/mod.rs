@@ -9,6 +9,7 @@ pub use common::{Colour, Common, ProgressWhen, Terminal};
 pub use run_flags::RunFlags;
 
 use crate::exit::{Exit, Failure};
+use crate::output;
 use clap::Parser;
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -31,7 +32,10 @@ pub fn run<P: Parser>(
     program: impl FnOnce(P) -> Result<(), Failure>,
 ) -> ExitCode {
     // Without a handler the shell sees a signal, not a code; a second handler cannot be there yet.
-    let _ = ctrlc::set_handler(|| std::process::exit(i32::from(Exit::Interrupted as u8)));
+    let _ = ctrlc::set_handler(|| {
+        output::stop_writing();
+        std::process::exit(i32::from(Exit::Interrupted as u8))
+    });
     let report_panic = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
         report_panic(info);

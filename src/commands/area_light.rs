@@ -9,7 +9,9 @@ use crate::input::{LoadedMap, load_normal_map};
 use crate::pack;
 use crate::progress::Stages;
 use clap::ValueEnum;
-use glint_bake_core::area_light::{self, AreaLightOptions, mips, sections};
+use glint_bake_core::area_light::{self, AreaLightMaterial, AreaLightOptions, mips, sections};
+use glint_bake_core::normal_map::NormalMap;
+use glint_bake_core::progress::Silent;
 use glint_formats::Codec;
 use glint_formats::area_light::NormalStorage;
 use glint_formats::container::full_mip_count;
@@ -51,6 +53,10 @@ pub struct Args {
     /// How normals and roughness are stored
     #[arg(long, value_name = "FORMAT", default_value = "f16", help_heading = "Bake")]
     pub format: Format,
+    /// Leave out so many of the finest mips, 0 to 14, for maps that are never seen closer
+    #[arg(long, value_name = "N", default_value = "0", value_parser = clap::value_parser!(u32).range(0..=14))]
+    #[arg(help_heading = "Bake")]
+    pub skip_mips: u32,
     /// Compress the pack's sections with Zstandard
     #[arg(long, help_heading = "Bake")]
     pub compress: bool,
@@ -77,6 +83,21 @@ pub fn run(args: Args, terminal: Terminal) -> Result<(), Failure> {
     super::on_threads(threads, || bake(&args, terminal))?
 }
 
+/// A bake that is only looked at: map and material, and the bytes that the pack would have.
+pub(super) fn draft(args: &Args) -> Result<((NormalMap, AreaLightMaterial), u64), Failure> {
+    let options = args.options();
+    options.validate()?;
+    let name = args.name()?;
+    let loaded = load_normal_map(&args.map, &args.input.options(args.run.max_memory))?;
+    let digest = digest(&args.map, &loaded)?;
+    let material = area_light::bake(&loaded.map, &options, args.run.max_memory, &Silent)
+        .map_err(|e| Failure::bake(&args.map, &e))?;
+    let codec = if args.compress { Codec::Zstd } else { Codec::None };
+    let sections = sections::to_sections(&name, &material, codec);
+    let bytes = pack::seal(&args.provenance(&loaded, digest), sections)?.len() as u64;
+    Ok(((loaded.map, material), bytes))
+}
+
 fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let options = args.options();
     options.validate()?;
@@ -93,7 +114,11 @@ fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let bytes = args.map_bytes(width, height);
     mips::check_memory(&loaded.map, args.run.max_memory).map_err(|e| Failure::bake(&args.map, &e))?;
     delivery.check_size(bytes, SMALLER)?;
-    let line = format!("{width} × {height} texels, {} mips, {}", full_mip_count(width, height), kib(bytes));
+    let line = {
+        let skipped = args.skip_mips.min(full_mip_count(width, height) - 1);
+        let (width, height) = ((width >> skipped).max(1), (height >> skipped).max(1));
+        format!("{width} × {height} texels, {} mips, {}", full_mip_count(width, height), kib(bytes))
+    };
     if args.run.dry_run {
         let output = args.output.display();
         terminal.say(&format!("would write {output}: \"{name}\", {line}; dry run, nothing was written"));
@@ -119,6 +144,7 @@ impl Args {
                 Format::F16 => NormalStorage::F16,
                 Format::Snorm8 => NormalStorage::Snorm8,
             },
+            skip_mips: self.skip_mips,
         }
     }
 
@@ -130,7 +156,8 @@ impl Args {
 
     /// Bytes of the textures of a map.
     fn map_bytes(&self, width: u32, height: u32) -> u64 {
-        let texels: u64 = (0..full_mip_count(width, height))
+        let mips = full_mip_count(width, height);
+        let texels: u64 = (self.skip_mips.min(mips - 1)..mips)
             .map(|mip| u64::from((width >> mip).max(1)) * u64::from((height >> mip).max(1)))
             .sum();
         let textures = if self.anisotropic { 2 } else { 1 };
@@ -144,6 +171,9 @@ impl Args {
             ("anisotropic", self.anisotropic.to_string()),
             ("format", format!("{:?}", self.format).to_ascii_lowercase()),
         ];
+        if self.skip_mips > 0 {
+            options.push(("skip-mips", self.skip_mips.to_string()));
+        }
         options.extend(self.input.provenance());
         let notes = loaded.warnings.iter().map(|warning| format!("{}: {warning}", digest.name)).collect();
         Provenance {

@@ -9,8 +9,9 @@ use crate::pack;
 use crate::progress::Stages;
 use clap::ValueEnum;
 use glint_bake_core::environment::options::{DEFAULT_MIN_FACE_SIZE, LevelCount};
-use glint_bake_core::environment::{EnvironmentOptions, bake, quality, sections};
+use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, bake, quality, sections};
 use glint_bake_core::error::BakeError;
+use glint_bake_core::progress::Silent;
 use glint_formats::Codec;
 use glint_formats::environment::{EnvironmentParams, Kernel, LevelChoice, Storage};
 use glint_formats::provenance::Provenance;
@@ -187,6 +188,19 @@ fn warn_of_rounding(params: &EnvironmentParams, input: &Path, terminal: Terminal
             ));
         }
     }
+}
+
+/// A bake that is only looked at: image and environment, and the bytes that the pack would have.
+pub(super) fn draft(args: &Args) -> Result<((EnvironmentImage, Environment), u64), Failure> {
+    let options = args.options();
+    options.validate()?;
+    let loaded = load_environment(&args.input, args.run.max_memory)?;
+    let environment = bake(&loaded.image, loaded.negative_pixels, &options, &Silent)
+        .map_err(|error| Failure::bake(&args.input, &error))?;
+    let codec = if args.compress { Codec::Zstd } else { Codec::None };
+    let sections = sections::to_sections(&args.name(), &environment, codec);
+    let bytes = pack::seal(&args.provenance(&loaded), sections)?.len() as u64;
+    Ok(((loaded.image, environment), bytes))
 }
 
 impl Args {

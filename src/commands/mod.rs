@@ -1,6 +1,7 @@
 //! One file (or folder) a subcommand: its flags and what it does.
 
 mod area_light;
+mod build;
 mod deliver;
 mod demo;
 mod dictionary;
@@ -8,10 +9,15 @@ mod environment;
 mod export;
 mod generate;
 mod info;
+mod methods;
 mod ndf_maps;
+mod ninja;
 mod normal_maps;
+mod plan;
 mod preview;
 mod report;
+
+pub use methods::{Draft, Method};
 
 use crate::cli::{Common, LONG_VERSION, Terminal};
 use crate::exit::{Failure, HELP};
@@ -46,10 +52,11 @@ pub struct Bake {
 
 #[derive(Subcommand, Debug)]
 enum Command {
-    NdfMaps(Box<ndf_maps::Args>),
-    Dictionary(dictionary::Args),
-    Environment(environment::Args),
-    AreaLight(Box<area_light::Args>),
+    #[command(flatten)]
+    Method(Method),
+    Build(build::Args),
+    Ninja(ninja::Args),
+    Plan(plan::Args),
     Preview(preview::Args),
     Export(export::Args),
     Generate(generate::Args),
@@ -61,10 +68,10 @@ enum Command {
 pub fn bake(cli: Bake) -> Result<(), Failure> {
     let terminal = Terminal::new(&cli.common);
     match cli.command {
-        Command::NdfMaps(args) => ndf_maps::run(*args, terminal),
-        Command::Dictionary(args) => dictionary::run(&args, terminal),
-        Command::Environment(args) => environment::run(&args, terminal),
-        Command::AreaLight(args) => area_light::run(*args, terminal),
+        Command::Method(method) => method.run(terminal),
+        Command::Build(args) => build::run(&args, terminal),
+        Command::Ninja(args) => ninja::run(&args, terminal),
+        Command::Plan(args) => plan::run(&args, terminal),
         Command::Preview(args) => preview::run(&args, terminal),
         Command::Export(args) => export::run(&args, terminal),
         Command::Generate(args) => generate::run(&args, terminal),

@@ -93,3 +93,23 @@ fn a_dry_run_checks_all_and_writes_nothing() {
 fn report_depfile_and_json_are_written_and_quiet_is_quiet() {
     case().check_outputs(&["scratches.png"]);
 }
+
+#[test]
+fn fine_mips_can_be_left_out() {
+    use glint_formats::area_light::NORMALS;
+    use glint_formats::{Limits, Pack};
+    let case = case();
+    let normals = |flags: &[&str]| {
+        let bytes = case.pack(flags);
+        case.verify();
+        let pack = Pack::from_bytes(bytes, &Limits::default()).unwrap();
+        pack.payload(pack.find(NORMALS, "scratches").unwrap()).unwrap().to_vec()
+    };
+    // 16 × 8, 8 × 4, 4 × 2, 2 × 1, 1 × 1 texels of 8 bytes.
+    let (all, some, last) = (normals(&[]), normals(&["--skip-mips", "2"]), normals(&["--skip-mips", "14"]));
+    assert_eq!((all.len(), some.len(), last.len()), (8 * 171, 8 * 11, 8));
+    assert!(all.ends_with(&some) && all.ends_with(&last));
+    case.refuses(&["--skip-mips", "15"], 2, "--skip-mips");
+    let done = case.bake(&["--skip-mips", "1", "-n"]).ok();
+    assert!(done.stderr.contains("8 × 4 texels, 4 mips, 0.3 KiB"), "{}", done.stderr);
+}

@@ -67,6 +67,7 @@ fn every_storage_preset_and_placement_flag_is_taken() {
         &["--storage", "f16", "--roughness", "0.05"][..],
         &["--storage", "paper"],
         &["--preset", "draft", "--crop", "4x4+2+1", "--normal-y", "down", "--wrap", "clamp"],
+        &["--min-tile", "4"],
         &["--channels", "xy", "--transforms", "rotate=30,scale=2"],
         &["--placement", "stochastic", "--transforms", "rotate=0..90,mirror", "--palette", "3", "--cells", "4"],
         &["--placement", "stochastic", "--spacing", "0.5", "--seed", "9"],
@@ -188,5 +189,27 @@ fn messages_are_coloured_when_asked() {
     for flags in [&["--color", "never"][..], &["--color", "auto"], &[]] {
         let plain = refused(flags).stderr;
         assert!(plain.contains("error: none.png") && !plain.contains('\x1b'), "{plain}");
+    }
+}
+
+#[test]
+fn fine_tiles_can_be_left_out() {
+    let folder = maps();
+    let report = |flags: &[&str]| {
+        bake(folder.path(), &[&["ndf-maps", "scratches.png", "-o", "out.glintpack"], flags].concat()).ok();
+        info(folder.path(), &["out.glintpack", "--verify"]).ok();
+        json(&info(folder.path(), &["out.glintpack", "--json"]).ok().stdout)
+    };
+    let edges = |report: &serde_json::Value| -> Vec<u64> {
+        let levels = report["materials"][0]["levels"].as_array().unwrap();
+        levels.iter().map(|level| level["tile_texels"].as_u64().unwrap()).collect()
+    };
+    let (all, some, top) = (report(&[]), report(&["--min-tile", "4"]), report(&["--min-tile", "16384"]));
+    assert_eq!((edges(&all), edges(&some), edges(&top)), (vec![2, 4, 8, 16], vec![4, 8, 16], vec![16]));
+    let bytes = |report: &serde_json::Value| report["bytes"].as_u64().unwrap();
+    assert!(bytes(&top) < bytes(&some) && bytes(&some) < bytes(&all));
+    for bad in ["0", "1", "3", "32768", "x"] {
+        let refused = bake(folder.path(), &["ndf-maps", "scratches.png", "-o", "no.glintpack", "--min-tile", bad]);
+        assert!(refused.code == 2 && refused.stderr.contains("--min-tile"), "{}", refused.stderr);
     }
 }

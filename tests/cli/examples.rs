@@ -1,5 +1,6 @@
 //! Every help has examples, and every example runs; every flag has a test.
 
+use crate::projects::PROJECT;
 use crate::support::{packs, root};
 use assert_cmd::Command;
 use glint_bake::commands::programs;
@@ -24,6 +25,19 @@ fn examples(command: &clap::Command) -> Vec<String> {
     lines.take_while(|line| line.starts_with("  ")).map(|line| line.trim().to_owned()).collect()
 }
 
+/// A scene that is planned in a moment.
+const SCENE: &str = r#"
+[scene]
+lights = ["point"]
+error = 1
+
+[materials.far]
+input = "flakes.png"
+roughness = 0.2
+distance = [9, 9]
+texels-per-metre = 900
+"#;
+
 /// What the examples name is laid out under those names.
 #[test]
 fn every_help_has_examples_and_every_example_runs() {
@@ -32,6 +46,8 @@ fn every_help_has_examples_and_every_example_runs() {
         let path = |name: &str| inputs.path().join(format!("{name}.glintpack"));
         fs::copy(path(from), path(to)).unwrap();
     }
+    fs::write(inputs.path().join("glint.toml"), PROJECT).unwrap();
+    fs::write(inputs.path().join("scene.toml"), SCENE).unwrap();
     let mut seen = 0;
     for (name, command) in commands() {
         let examples = examples(&command);

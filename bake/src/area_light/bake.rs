@@ -27,8 +27,11 @@ pub fn bake(
     Ok(pack(map, &levels, options))
 }
 
-/// Packs the levels of a map.
+/// Packs the levels of a map. What is left when fine mips are skipped is a whole chain again, of a smaller map.
 pub fn pack(map: &NormalMap, levels: &[MipLevel], options: &AreaLightOptions) -> AreaLightMaterial {
+    let skipped = (options.skip_mips as usize).min(levels.len().saturating_sub(1));
+    let levels = &levels[skipped..];
+    let (width, height) = levels.first().map_or((map.width, map.height), |level| (level.width, level.height));
     let mut normals = Vec::new();
     let mut roughness = Vec::new();
     let mut measured = MeasuredError { table_mean: TABLE_MEAN_ERROR, ..MeasuredError::default() };
@@ -46,8 +49,8 @@ pub fn pack(map: &NormalMap, levels: &[MipLevel], options: &AreaLightOptions) ->
     }
     AreaLightMaterial {
         params: AreaLightParams {
-            width: map.width,
-            height: map.height,
+            width,
+            height,
             wrap: map.wrap,
             base_roughness: options.base_roughness as f32,
             storage: options.storage,

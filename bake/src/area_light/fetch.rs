@@ -61,6 +61,11 @@ impl<'a> Maps<'a> {
         }
     }
 
+    /// Columns and rows of the first mip that is there, over those of a map of `width` × `height` texels.
+    pub fn scale(&self, width: u32, height: u32) -> Vec2 {
+        Vec2::new(self.width as f32 / width as f32, self.height as f32 / height as f32)
+    }
+
     /// Whether there is roughness by direction.
     pub fn is_anisotropic(&self) -> bool {
         !self.roughness.is_empty()

@@ -15,11 +15,13 @@ pub struct AreaLightOptions {
     pub anisotropic: bool,
     /// How normals and roughness are stored.
     pub storage: NormalStorage,
+    /// So many of the finest mips are left out, for maps that are never seen closer. The last mip always stays.
+    pub skip_mips: u32,
 }
 
 impl Default for AreaLightOptions {
     fn default() -> AreaLightOptions {
-        AreaLightOptions { base_roughness: 0.1, anisotropic: false, storage: NormalStorage::F16 }
+        AreaLightOptions { base_roughness: 0.1, anisotropic: false, storage: NormalStorage::F16, skip_mips: 0 }
     }
 }
 

@@ -225,6 +225,8 @@ pub fn highlight_error(
     over: &Comparison<'_>,
 ) -> HighlightError {
     let extent = DVec2::new(f64::from(map.width), f64::from(map.height));
+    // Where fine mips were left out, texels of the maps are larger than those of the map.
+    let scale = maps.scale(map.width, map.height).as_dvec2();
     let squares = |place: u32| -> ([f64; 6], f64) {
         // The same places, as shares of the map, at every distance.
         let position = place_of(over.seed, place) * extent;
@@ -234,7 +236,7 @@ pub fn highlight_error(
         let (mut errors, mut power) = ([0.0; 6], 0.0);
         for (scene, grid) in over.scenes {
             let exact = grid.mean(&weights);
-            let found = by_method(tables, maps, position, footprint_texels, scene, over.lobes);
+            let found = by_method(tables, maps, position * scale, footprint_texels * scale.x, scene, over.lobes);
             for k in 0..6 {
                 errors[k] += (found[k] - exact).powi(2);
             }

@@ -20,6 +20,8 @@ pub const ROUGHNESS_RANGE: (f64, f64) = (1e-4, 1.0);
 
 /// Error of one tile at most, relative to what is asked of the mean.
 pub const WORST_OF_MEAN: f64 = 3.0;
+/// Edge of the finest tiles.
+pub const FINEST_TILE: u32 = 2;
 /// Part of the error asked for that the bake uses up: its fine grid agrees with the exact integral to a few per cent of
 /// the error that it measures.
 const USED: f64 = 0.95;
@@ -33,11 +35,14 @@ pub struct NdfMapsOptions {
     pub max_error: f64,
     /// How densities are stored.
     pub storage: DensityStorage,
+    /// Finer tiles than this, in texels, are left out, but for the one tile that covers the example. Footprints that are
+    /// too small for the tiles that are left see lobes, which are many under more than two texels.
+    pub min_tile: u32,
 }
 
 impl Default for NdfMapsOptions {
     fn default() -> NdfMapsOptions {
-        NdfMapsOptions { roughness: 0.02, max_error: 0.01, storage: DensityStorage::SqrtU8 }
+        NdfMapsOptions { roughness: 0.02, max_error: 0.01, storage: DensityStorage::SqrtU8, min_tile: FINEST_TILE }
     }
 }
 
@@ -64,7 +69,7 @@ impl BakedNdfMaps {
 /// Bakes one example. Errors: an option out of range, or an example that is too large.
 pub fn bake(map: &NormalMap, options: &NdfMapsOptions, progress: &dyn Progress) -> Result<BakedNdfMaps> {
     check(map, options)?;
-    let levels = levels_of(map.width, map.height);
+    let levels = levels_from(map.width, map.height, options.min_tile);
     let rects: Vec<TexelRect> = levels.iter().flat_map(|level| tile_rects(map, level)).collect();
     let settings = FitSettings {
         roughness: options.roughness,
@@ -157,6 +162,12 @@ fn check(map: &NormalMap, options: &NdfMapsOptions) -> Result<()> {
     if options.max_error.is_nan() || options.max_error <= 0.0 {
         return Err(BakeError::BadOption(format!("maximum error {} is not above 0", options.max_error)));
     }
+    if !options.min_tile.is_power_of_two() || options.min_tile < FINEST_TILE {
+        return Err(BakeError::BadOption(format!(
+            "smallest tile {} is not a power of two from 2 on",
+            options.min_tile
+        )));
+    }
     let texels = map.width as u64 * map.height as u64;
     if texels > MAX_EXAMPLE_TEXELS {
         return Err(BakeError::LimitExceeded(format!(
@@ -170,8 +181,14 @@ fn check(map: &NormalMap, options: &NdfMapsOptions) -> Result<()> {
 
 /// Levels of a `width` × `height` example: tiles of 2, 4, 8, … texels, up to the one tile that covers it.
 pub fn levels_of(width: u32, height: u32) -> Vec<Level> {
+    levels_from(width, height, FINEST_TILE)
+}
+
+/// The same from tiles of `min_tile` texels (a power of two) on; always the last level.
+pub fn levels_from(width: u32, height: u32, min_tile: u32) -> Vec<Level> {
+    let covering = width.max(height).next_power_of_two();
     let mut levels = Vec::new();
-    let (mut tile_texels, mut first_tile) = (2, 0);
+    let (mut tile_texels, mut first_tile) = (min_tile.min(covering).max(FINEST_TILE), 0);
     loop {
         let (tiles_x, tiles_y) = (width.div_ceil(tile_texels), height.div_ceil(tile_texels));
         levels.push(Level { tile_texels, tiles_x, tiles_y, first_tile });

@@ -25,13 +25,28 @@ pub struct NdfError {
 impl NdfError {
     /// Error of `density` against `exact`.
     pub fn of(exact: &ReferenceNdf, density: impl Fn(glam::Vec2) -> f32) -> NdfError {
+        ExactNdf::new(exact).error(density)
+    }
+}
+
+/// An exact NDF on the grid that errors are measured on: made once, it measures any number of bakes.
+#[derive(Clone, Debug)]
+pub struct ExactNdf {
+    grid: DiskGrid,
+    values: Vec<f64>,
+}
+
+impl ExactNdf {
+    /// Evaluates the reference on its grid.
+    pub fn new(exact: &ReferenceNdf) -> ExactNdf {
         let grid = exact.grid(GRID_PER_SIGMA);
-        NdfError::on_grid(&grid, &exact.on_grid(&grid), density)
+        ExactNdf { values: exact.on_grid(&grid), grid }
     }
 
-    fn on_grid(grid: &DiskGrid, exact: &[f64], density: impl Fn(glam::Vec2) -> f32) -> NdfError {
-        let decoded = grid.evaluate(|s| density(s.as_vec2()) as f64);
-        NdfError { e1: e1(&decoded, exact), energy: (grid.integral(&decoded) - 1.0).abs() }
+    /// Error of `density` against it.
+    pub fn error(&self, density: impl Fn(glam::Vec2) -> f32) -> NdfError {
+        let decoded = self.grid.evaluate(|s| density(s.as_vec2()) as f64);
+        NdfError { e1: e1(&decoded, &self.values), energy: (self.grid.integral(&decoded) - 1.0).abs() }
     }
 }
 

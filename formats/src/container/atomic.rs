@@ -4,6 +4,11 @@ use std::fs::{self, File, Permissions};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
+/// How the names of temporary files begin.
+pub const TEMPORARY_PREFIX: &str = ".glintpack-";
+/// How they end.
+pub const TEMPORARY_SUFFIX: &str = ".tmp";
+
 /// What [`write_atomic`] did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WriteOutcome {
@@ -25,7 +30,7 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<WriteOutcome> {
         _ => Path::new("."),
     };
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".glintpack-").suffix(".tmp");
+    builder.prefix(TEMPORARY_PREFIX).suffix(TEMPORARY_SUFFIX);
     let kept = existing_permissions(&target);
     #[cfg(unix)]
     {

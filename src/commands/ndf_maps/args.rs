@@ -43,6 +43,9 @@ pub struct Args {
     /// How densities are stored; paper is 128 x 128 floats a tile [default: by preset]
     #[arg(long, value_name = "STORAGE", help_heading = "Bake")]
     pub storage: Option<Storage>,
+    /// Edge in texels of the smallest tiles that are kept, a power of two; larger where no footprint is smaller
+    #[arg(long, value_name = "TEXELS", default_value = "2", value_parser = tile_edge, help_heading = "Bake")]
+    pub min_tile: u32,
     /// Compress the pack's sections with Zstandard
     #[arg(long, help_heading = "Bake")]
     pub compress: bool,
@@ -86,6 +89,11 @@ pub struct Args {
     /// Flags that every bake has.
     #[command(flatten)]
     pub run: RunFlags,
+}
+
+fn tile_edge(text: &str) -> Result<u32, String> {
+    let number = text.parse::<u32>().ok().filter(|n| n.is_power_of_two() && (2..=16_384).contains(n));
+    number.ok_or_else(|| "expected a power of two from 2 to 16384".into())
 }
 
 fn power_of_two(text: &str) -> Result<u32, String> {

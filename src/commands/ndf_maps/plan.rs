@@ -6,7 +6,7 @@ use crate::commands::normal_maps::{check_name, digest, unique_name};
 use crate::exit::{Exit, Failure};
 use crate::input::{LoadedMap, load_normal_map};
 use crate::pack;
-use glint_bake_core::ndf_maps::bake::{NdfMapsOptions, ROUGHNESS_RANGE, WORST_OF_MEAN};
+use glint_bake_core::ndf_maps::bake::{FINEST_TILE, NdfMapsOptions, ROUGHNESS_RANGE, WORST_OF_MEAN};
 use glint_bake_core::ndf_maps::eval::Material;
 use glint_bake_core::ndf_maps::placement::{PlacementOptions, StochasticOptions};
 use glint_formats::Codec;
@@ -44,11 +44,22 @@ pub struct Plan {
 impl Plan {
     /// Checks arguments, then paths, then the content of the inputs.
     pub fn new(args: Args) -> Result<Plan, Failure> {
+        Plan::checked(args, true)
+    }
+
+    /// The same for a bake that is only looked at.
+    pub fn unwritten(args: Args) -> Result<Plan, Failure> {
+        Plan::checked(args, false)
+    }
+
+    fn checked(args: Args, writes: bool) -> Result<Plan, Failure> {
         let bake = bake_options(&args)?;
         let placement = placement_options(&args)?;
         let names = names(&args)?;
         let layers = args.layers.as_ref().map(|text| layers(text, &names, &args)).transpose()?;
-        delivery(&args).check()?;
+        if writes {
+            delivery(&args).check()?;
+        }
         let input = args.input.options(args.run.max_memory);
         let mut sources = Vec::new();
         for (path, name) in args.maps.iter().zip(names) {
@@ -106,6 +117,9 @@ impl Plan {
             options.push(("cells", args.cells.to_string()));
             options.push(("spacing", args.spacing.to_string()));
         }
+        if args.min_tile != FINEST_TILE {
+            options.push(("min-tile", args.min_tile.to_string()));
+        }
         let remark = |source: &Source, warning: &String| format!("{}: {warning}", source.digest.name);
         Provenance {
             options: options.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
@@ -127,7 +141,12 @@ fn bake_options(args: &Args) -> Result<NdfMapsOptions, Failure> {
     if !(low..=high).contains(&args.roughness) {
         return Err(Failure::usage(format!("--roughness: expected {low} to {high}, found {}", args.roughness)));
     }
-    Ok(NdfMapsOptions { roughness: args.roughness, max_error: args.wanted_error(), storage: args.wanted_storage() })
+    Ok(NdfMapsOptions {
+        roughness: args.roughness,
+        max_error: args.wanted_error(),
+        storage: args.wanted_storage(),
+        min_tile: args.min_tile,
+    })
 }
 
 fn placement_options(args: &Args) -> Result<PlacementOptions, Failure> {

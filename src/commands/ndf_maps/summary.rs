@@ -28,7 +28,7 @@ pub fn of_plan(plan: &Plan) -> String {
             "would bake {} as \"{}\": {width} × {height} texels, {} tiles",
             source.path.display(),
             source.name,
-            pack::tile_count(width, height)
+            pack::tile_count(width, height, plan.bake.min_tile)
         ));
     }
     let output = plan.args.output.display();

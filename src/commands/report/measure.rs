@@ -164,7 +164,7 @@ fn settings(map: &NormalMap) -> Result<Vec<Setting>> {
         let own = [0.1, 0.05, 0.02, 0.01, 0.005].map(|error| (DensityStorage::SqrtU8, error));
         let others = [(DensityStorage::F16, 0.01), (DensityStorage::F16, 0.003), (DensityStorage::PaperF32, 0.01)];
         for (storage, max_error) in own.into_iter().chain(others) {
-            let options = NdfMapsOptions { roughness, max_error, storage };
+            let options = NdfMapsOptions { roughness, max_error, storage, ..NdfMapsOptions::default() };
             let begin = Instant::now();
             let baked = bake::bake(map, &options, &Silent)?;
             all.push(Setting {

@@ -1,0 +1,292 @@
+//! A table of options as the command line that it stands for, parsed by the very parser of that command.
+//!
+//! So each option is defined once, as a flag: the same name, values, defaults and errors. A key is a flag's long name;
+//! `input` is what the command takes without a flag. Paths are relative to the project file.
+
+use super::Target;
+use super::file::Entry;
+use crate::cli::RunFlags;
+use crate::commands::Method;
+use clap::builder::ValueParser;
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
+use std::any::TypeId;
+use std::path::{Path, PathBuf};
+use toml::de::DeValue;
+
+/// Key of what the command takes without a flag.
+const INPUT: &str = "input";
+/// Flags about a run that one material may still have for itself.
+const OWN_RUN_FLAGS: [&str; 2] = ["max-memory", "report"];
+
+/// An option and the table that says it.
+pub struct Given<'a> {
+    /// Key and value.
+    pub entry: Entry<'a>,
+    /// Name of the table.
+    pub table: String,
+}
+
+/// What is wrong with a table.
+pub struct Wrong {
+    /// Key of the option, when it is one.
+    pub key: Option<String>,
+    /// Why.
+    pub why: String,
+}
+
+/// A table as words of a command line.
+#[derive(Clone, Debug, Default)]
+pub struct Words {
+    /// Every flag with the key that it stands for, in the order of the table.
+    pub flags: Vec<(String, String)>,
+    /// What is given without a flag.
+    pub inputs: Vec<String>,
+}
+
+impl Words {
+    /// Whether the table says something of an option.
+    pub fn says(&self, key: &str) -> bool {
+        self.flags.iter().any(|(other, _)| other == key)
+    }
+
+    /// The same with a value, none for a flag, for an option that the table says nothing of.
+    pub fn with(&self, key: &str, value: &str) -> Words {
+        let mut words = self.clone();
+        if !self.says(key) {
+            words.flags.push((key.to_owned(), flag(key, value)));
+        }
+        words
+    }
+}
+
+/// A flag as it is typed; without a value when that is empty.
+pub fn flag(key: &str, value: &str) -> String {
+    if value.is_empty() { format!("--{key}") } else { format!("--{key}={value}") }
+}
+
+/// The commands that bake, as a project sees them.
+pub struct Methods {
+    command: Command,
+    /// Flags that say how to run, not what to make.
+    run_flags: Vec<String>,
+}
+
+impl Default for Methods {
+    fn default() -> Methods {
+        Methods::new()
+    }
+}
+
+impl Methods {
+    /// All methods.
+    pub fn new() -> Methods {
+        let command = Method::augment_subcommands(Command::new("glint-bake")).disable_help_subcommand(true);
+        let run_flags = RunFlags::augment_args(Command::new("run"));
+        Methods {
+            command: command.mut_subcommands(|method| method.disable_help_flag(true)),
+            run_flags: run_flags.get_arguments().filter_map(|arg| arg.get_long().map(str::to_owned)).collect(),
+        }
+    }
+
+    /// Their names.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.command.get_subcommands().map(Command::get_name)
+    }
+
+    /// A table of options as words.
+    ///
+    /// # Errors
+    /// The first key whose value no flag can have.
+    pub fn words(&self, method: &str, given: &[Given<'_>], folder: &Path) -> Result<Words, Wrong> {
+        let mut words = Words::default();
+        for option in given {
+            let key = option.entry.key;
+            let wrong = |why: String| Wrong { key: Some(key.to_owned()), why };
+            for value in self.values(method, option.entry, folder).map_err(wrong)? {
+                match (key, value) {
+                    (INPUT, Value::Text(text)) => words.inputs.push(text),
+                    (_, Value::Text(text)) => words.flags.push((key.to_owned(), format!("--{key}={text}"))),
+                    (_, Value::Flag) => words.flags.push((key.to_owned(), format!("--{key}"))),
+                }
+            }
+        }
+        if words.inputs.is_empty() && self.positional(method).is_some() {
+            return Err(Wrong {
+                key: None,
+                why: "expected the files to bake as input = \"FILE\", found no input".into(),
+            });
+        }
+        Ok(words)
+    }
+
+    /// The target that words describe.
+    ///
+    /// # Errors
+    /// The first option that is wrong, as the command itself would say it.
+    pub fn target(&mut self, name: &str, method: &str, words: &Words, pack: PathBuf) -> Result<Target, Wrong> {
+        let mut arguments = vec![format!("--output={}", pack.display())];
+        arguments.extend(words.flags.iter().map(|(_, flag)| flag.clone()));
+        if !words.inputs.is_empty() {
+            arguments.push("--".into());
+            arguments.extend(words.inputs.iter().cloned());
+        }
+        let line = ["glint-bake", method].into_iter().map(str::to_owned).chain(arguments.iter().cloned());
+        let parsed = self.command.try_get_matches_from_mut(line);
+        let fault = |error: &clap::Error| {
+            let why = reason(error);
+            let named = |key: &str| why.contains(&format!("--{key} ")) || why.contains(&format!("--{key}'"));
+            Wrong { key: words.flags.iter().map(|(key, _)| key).find(|key| named(key)).cloned(), why }
+        };
+        let matches = parsed.map_err(|error| fault(&error))?;
+        let bake = Method::from_arg_matches(&matches).map_err(|error| fault(&error))?;
+        let (_, matches) = matches.subcommand().unwrap_or((method, &matches));
+        Ok(Target {
+            name: name.to_owned(),
+            options: self.options(method, matches),
+            inputs: self.inputs(method, matches),
+            report: path_of(matches, "report"),
+            pack,
+            planned: None,
+            bake,
+            method: method.to_owned(),
+            arguments,
+        })
+    }
+
+    /// What a key adds to the command line.
+    fn values(&self, method: &str, entry: Entry<'_>, folder: &Path) -> Result<Vec<Value>, String> {
+        let key = entry.key;
+        let arg = if key == INPUT { self.positional(method) } else { self.flag(method, key) };
+        if key == INPUT && arg.is_none() {
+            return Err(format!("{method} has no input; leave it out"));
+        }
+        if key == "output" {
+            return Err(
+                "the pack is named after its table and lies in the project's output folder; leave it out".into()
+            );
+        }
+        if self.run_flags.iter().any(|flag| flag == key) && !OWN_RUN_FLAGS.contains(&key) {
+            return Err(format!("--{key} is given to glint-bake build, not to one material; leave it out"));
+        }
+        // The parser itself says that there is no such flag, and which one may be meant.
+        let Some(arg) = arg else { return Ok(vec![Value::Flag]) };
+        if matches!(arg.get_action(), ArgAction::SetTrue) {
+            return match entry.value {
+                DeValue::Boolean(true) => Ok(vec![Value::Flag]),
+                DeValue::Boolean(false) => Ok(Vec::new()),
+                _ => Err("expected true or false".into()),
+            };
+        }
+        let mut texts = match entry.value {
+            DeValue::Array(array) => array.iter().map(|value| text_of(value.get_ref())).collect::<Result<_, _>>()?,
+            value => vec![text_of(value)?],
+        };
+        let repeats =
+            matches!(arg.get_action(), ArgAction::Append) || arg.get_num_args().is_some_and(|n| n.max_values() > 1);
+        if !repeats && key == INPUT && texts.len() != 1 {
+            return Err(format!("{method} takes one file, found {}", texts.len()));
+        }
+        if !repeats {
+            texts = vec![texts.join(",")];
+        }
+        if is_path(arg) {
+            texts = texts.into_iter().map(|text| folder_join(folder, &text)).collect();
+        }
+        Ok(texts.into_iter().map(Value::Text).collect())
+    }
+
+    /// Whether a key is one of a method's; `method` and `input` are everybody's.
+    pub fn knows(&self, method: &str, key: &str) -> bool {
+        key == INPUT || key == "method" || self.flag(method, key).is_some()
+    }
+
+    fn args(&self, method: &str) -> impl Iterator<Item = &Arg> {
+        self.command.find_subcommand(method).into_iter().flat_map(Command::get_arguments)
+    }
+
+    fn positional(&self, method: &str) -> Option<&Arg> {
+        self.args(method).find(|arg| arg.is_positional())
+    }
+
+    fn flag(&self, method: &str, key: &str) -> Option<&Arg> {
+        self.args(method).find(|arg| arg.get_long() == Some(key))
+    }
+
+    /// Whether an argument says what to make, in words that are no path.
+    fn is_option(&self, arg: &Arg) -> bool {
+        let runs = arg.get_long().is_some_and(|long| self.run_flags.iter().any(|flag| flag == long));
+        !runs && !is_path(arg)
+    }
+
+    fn options(&self, method: &str, matches: &ArgMatches) -> Vec<(String, Vec<String>)> {
+        let mut options = Vec::new();
+        for arg in self.args(method).filter(|arg| self.is_option(arg)) {
+            let id = arg.get_id().as_str();
+            let values = if matches!(arg.get_action(), ArgAction::SetTrue) {
+                vec![matches.get_flag(id).to_string()]
+            } else {
+                let raw = matches.get_raw(id).into_iter().flatten();
+                raw.map(|value| value.to_string_lossy().into_owned()).collect()
+            };
+            options.push((arg.get_long().unwrap_or(id).to_owned(), values));
+        }
+        options
+    }
+
+    /// Every file that is read: what is given without a flag, and flags that name files.
+    fn inputs(&self, method: &str, matches: &ArgMatches) -> Vec<PathBuf> {
+        let written = |arg: &&Arg| {
+            let long = arg.get_long().unwrap_or_default();
+            long == "output" || self.run_flags.iter().any(|flag| flag == long)
+        };
+        let files = self.args(method).filter(|arg| is_path(arg)).filter(|arg| !written(arg));
+        let paths = files.flat_map(|arg| matches.get_raw(arg.get_id().as_str()).into_iter().flatten());
+        paths.map(PathBuf::from).collect()
+    }
+}
+
+/// A value on the command line.
+enum Value {
+    /// A flag that takes none.
+    Flag,
+    /// The text of one.
+    Text(String),
+}
+
+fn is_path(arg: &Arg) -> bool {
+    let parser: &ValueParser = arg.get_value_parser();
+    parser.type_id() == TypeId::of::<PathBuf>()
+}
+
+fn path_of(matches: &ArgMatches, id: &str) -> Option<PathBuf> {
+    matches.get_one::<PathBuf>(id).cloned()
+}
+
+/// A path of the project file as the process sees it.
+pub(super) fn folder_join(folder: &Path, text: &str) -> String {
+    if folder == Path::new(".") { text.to_owned() } else { folder.join(text).to_string_lossy().into_owned() }
+}
+
+/// A value as it would be typed.
+fn text_of(value: &DeValue<'_>) -> Result<String, String> {
+    match value {
+        DeValue::String(text) => Ok(text.to_string()),
+        DeValue::Integer(number) if number.radix() == 10 => Ok(number.as_str().to_owned()),
+        DeValue::Integer(number) => i128::from_str_radix(number.as_str(), number.radix())
+            .map(|number| number.to_string())
+            .map_err(|e| format!("expected a number: {e}")),
+        DeValue::Float(number) => Ok(number.as_str().to_owned()),
+        DeValue::Boolean(_) => Err("expected a value, found true or false".into()),
+        DeValue::Datetime(_) | DeValue::Array(_) | DeValue::Table(_) => {
+            Err(format!("expected text or a number, found a {}", value.type_str()))
+        }
+    }
+}
+
+/// What the parser says, in one line.
+fn reason(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let text = text.strip_prefix("error: ").unwrap_or(&text);
+    let end = ["\n\nUsage", "\n\nFor more"].iter().filter_map(|mark| text.find(mark)).min().unwrap_or(text.len());
+    text[..end].split_whitespace().collect::<Vec<_>>().join(" ")
+}

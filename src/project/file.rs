@@ -1,0 +1,268 @@
+//! The project file's tables. What they hold is left to [`super::arguments`], so that options are defined once, as flags.
+//!
+//! ```toml
+//! output = "packs"                # folder of the packs, "packs" when it is left out
+//! [defaults.ndf-maps]             # options of every material of a method
+//! [materials.NAME]                # method, input, and options of the method
+//! [environments.NAME]             # the same, with method = "environment"
+//! [scene]                         # what tables with a distance or an alpha are planned for
+//! ```
+
+use super::arguments::{Given, Methods, Wrong, folder_join};
+use super::scene::{self, LOBE_KEYS, VIEW_KEYS};
+use super::{Planned, Project, Seen, Target, Way};
+use crate::output::folder_of;
+use std::path::{Path, PathBuf};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Where packs go when the project does not say.
+const OUTPUT: &str = "packs";
+/// Method of what stands under `environments`.
+const ENVIRONMENT: &str = "environment";
+/// The group of such tables.
+const ENVIRONMENTS: &str = "environments";
+/// Methods that a scene's lights choose from.
+pub const NDF_MAPS: &str = "ndf-maps";
+/// The other one.
+pub const AREA_LIGHT: &str = "area-light";
+
+/// A key with its value and its place in the file.
+#[derive(Clone, Copy)]
+pub struct Entry<'a> {
+    /// The key.
+    pub key: &'a str,
+    /// The value.
+    pub value: &'a DeValue<'a>,
+    /// Byte at which the key begins.
+    pub at: usize,
+}
+
+/// What is wrong, as `file:line: table.key: why`, each once.
+struct Problems<'a> {
+    path: &'a Path,
+    text: &'a str,
+    found: Vec<String>,
+}
+
+impl Problems<'_> {
+    fn push(&mut self, at: usize, key: &str, why: &str) {
+        let line = 1 + self.text[..at].matches('\n').count();
+        let colon = if key.is_empty() { "" } else { ": " };
+        let message = format!("{}:{line}: {key}{colon}{why}", self.path.display());
+        if !self.found.contains(&message) {
+            self.found.push(message);
+        }
+    }
+
+    /// What is wrong with an option of a table, or with the table `name` that begins at `at`.
+    fn of_option(&mut self, wrong: &Wrong, given: &[Given<'_>], at: usize, name: &str) {
+        match given.iter().find(|option| Some(option.entry.key) == wrong.key.as_deref()) {
+            Some(option) => {
+                self.push(option.entry.at, &format!("{}.{}", option.table, option.entry.key), &wrong.why);
+            }
+            None => self.push(at, name, &wrong.why),
+        }
+    }
+}
+
+/// The project that `text` is.
+///
+/// # Errors
+/// Every problem with its line.
+pub fn parse(path: &Path, text: &str) -> Result<Project, Vec<String>> {
+    let mut problems = Problems { path, text, found: Vec::new() };
+    let document = match DeTable::parse(text) {
+        Ok(document) => document.into_inner(),
+        Err(error) => {
+            let at = error.span().map_or(0, |span| span.start.min(text.len()));
+            problems.push(at, "", error.message());
+            return Err(problems.found);
+        }
+    };
+    let folder = folder_of(path);
+    let mut output = OUTPUT.to_owned();
+    let (mut defaults, mut tables, mut scene) = (Vec::new(), Vec::new(), None);
+    for entry in entries(&document) {
+        match (entry.key, entry.value) {
+            ("output", DeValue::String(value)) if !value.is_empty() => output = value.to_string(),
+            ("output", _) => problems.push(entry.at, "output", "expected the name of a folder"),
+            ("scene", DeValue::Table(table)) => match scene::scene(entry, &entries(table)) {
+                Ok(found) => scene = Some(found),
+                Err((wrong, why)) => problems.push(wrong.at, &dotted("scene", wrong.key), why),
+            },
+            ("defaults", DeValue::Table(table)) => defaults = entries(table),
+            ("materials", DeValue::Table(table)) => tables.extend(entries(table).into_iter().map(|e| ("materials", e))),
+            (ENVIRONMENTS, DeValue::Table(table)) => {
+                tables.extend(entries(table).into_iter().map(|e| (ENVIRONMENTS, e)))
+            }
+            ("scene" | "defaults" | "materials" | ENVIRONMENTS, _) => {
+                problems.push(entry.at, entry.key, "expected tables, as in [materials.NAME]");
+            }
+            (key, _) => problems.push(entry.at, key, "expected output, defaults, materials, environments or scene"),
+        }
+    }
+    tables.sort_by_key(|(_, entry)| entry.at);
+    let output = PathBuf::from(folder_join(folder, &output));
+    let mut reader = Reader {
+        problems,
+        methods: Methods::new(),
+        defaults,
+        folder,
+        project: Project { path: path.to_owned(), output, targets: Vec::new(), scene, planned: Vec::new() },
+    };
+    reader.check_defaults();
+    for (group, entry) in tables {
+        reader.table(group, entry);
+    }
+    if reader.problems.found.is_empty() { Ok(reader.project) } else { Err(reader.problems.found) }
+}
+
+/// Reads one table after another.
+struct Reader<'a> {
+    problems: Problems<'a>,
+    methods: Methods,
+    defaults: Vec<Entry<'a>>,
+    folder: &'a Path,
+    project: Project,
+}
+
+impl<'a> Reader<'a> {
+    fn known_methods(&self) -> String {
+        self.methods.names().collect::<Vec<_>>().join(", ")
+    }
+
+    fn check_defaults(&mut self) {
+        for entry in &self.defaults {
+            let key = format!("defaults.{}", entry.key);
+            if !self.methods.names().any(|name| name == entry.key) {
+                self.problems.push(entry.at, &key, &format!("expected {}", self.known_methods()));
+            } else if entry.value.as_table().is_none() {
+                self.problems.push(entry.at, &key, "expected a table of options");
+            }
+        }
+    }
+
+    fn table(&mut self, group: &str, entry: Entry<'a>) {
+        let name = format!("{group}.{}", entry.key);
+        let mut taken = self.project.names();
+        if let Some(why) = bad_name(entry.key, taken.find(|taken| taken.to_lowercase() == entry.key.to_lowercase())) {
+            drop(taken);
+            return self.problems.push(entry.at, &name, &why);
+        }
+        drop(taken);
+        let DeValue::Table(table) = entry.value else {
+            return self.problems.push(entry.at, &name, "expected a table of options");
+        };
+        let own = entries(table);
+        let seen = match (group, self.project.scene.is_some()) {
+            (_, false) => Ok(None),
+            (ENVIRONMENTS, true) => scene::lobes(entry, &own).map(|lobes| lobes.map(Seen::Sky)),
+            (_, true) => scene::view(entry, &own).map(|view| view.map(Seen::Surface)),
+        };
+        let seen = match seen {
+            Ok(seen) => seen,
+            Err((wrong, why)) if wrong.at == entry.at => return self.problems.push(entry.at, &name, why),
+            Err((wrong, why)) => return self.problems.push(wrong.at, &dotted(&name, wrong.key), why),
+        };
+        let said = own.iter().find(|own| own.key == "method");
+        let method = match said.map(|said| said.value) {
+            None if group == ENVIRONMENTS => Some(ENVIRONMENT),
+            None if seen.is_some() => None,
+            Some(DeValue::String(value)) if self.methods.names().any(|name| name == value) => Some(value.as_ref()),
+            _ => {
+                let at = said.map_or(entry.at, |said| said.at);
+                return self.problems.push(at, &dotted(&name, "method"), &format!("expected {}", self.known_methods()));
+            }
+        };
+        match seen {
+            None => {
+                if let Some(method) = method {
+                    let way = self.way(entry, &name, method, entry.key.to_owned(), &own, &[]);
+                    self.project.targets.extend(way.map(|(_, target)| target));
+                }
+            }
+            Some(seen) => self.planned(entry, &name, method, seen, &own),
+        }
+    }
+
+    /// A table that is planned for the scene: every way in which it may be baked.
+    fn planned(&mut self, entry: Entry<'a>, table: &str, method: Option<&str>, seen: Seen, own: &[Entry<'a>]) {
+        let (methods, keys): (Vec<&str>, &[&str]) = match (&seen, method) {
+            (Seen::Sky(_), Some(ENVIRONMENT)) => (vec![ENVIRONMENT], &LOBE_KEYS),
+            (Seen::Surface(_), None) => (vec![NDF_MAPS, AREA_LIGHT], &VIEW_KEYS),
+            (Seen::Surface(_), Some(NDF_MAPS)) => (vec![NDF_MAPS], &VIEW_KEYS),
+            (Seen::Surface(_), Some(AREA_LIGHT)) => (vec![AREA_LIGHT], &VIEW_KEYS),
+            _ => {
+                let why = "nothing to plan for this method; leave out what says how it is seen";
+                return self.problems.push(entry.at, table, why);
+            }
+        };
+        let mut ways = Vec::new();
+        for method in &methods {
+            // Of several methods, each takes the options that it knows; what none knows is a mistake of the first.
+            let knows = |own: &&Entry<'a>| self.methods.knows(method, own.key);
+            let foreign = |own: &&Entry<'a>| methods.iter().any(|other| self.methods.knows(other, own.key));
+            let own: Vec<Entry<'a>> = own.iter().filter(|own| knows(own) || !foreign(own)).copied().collect();
+            let Some((way, _)) = self.way(entry, table, method, entry.key.to_owned(), &own, keys) else { return };
+            ways.push(way);
+        }
+        self.project.planned.push(Planned { name: entry.key.to_owned(), seen, ways });
+    }
+
+    /// A table, without `skipped` keys, as a bake of one method.
+    fn way(
+        &mut self,
+        entry: Entry<'a>,
+        table: &str,
+        method: &str,
+        name: String,
+        own: &[Entry<'a>],
+        skipped: &[&str],
+    ) -> Option<(Way, Target)> {
+        let mut given: Vec<Given<'_>> = Vec::new();
+        for default in self.defaults.iter().filter(|default| default.key == method) {
+            let Some(table) = default.value.as_table() else { continue };
+            let others = entries(table).into_iter().filter(|other| own.iter().all(|own| own.key != other.key));
+            given.extend(others.map(|entry| Given { entry, table: format!("defaults.{method}") }));
+        }
+        let own = own.iter().filter(|own| own.key != "method" && !skipped.contains(&own.key));
+        given.extend(own.map(|entry| Given { entry: *entry, table: table.to_owned() }));
+        let pack = self.project.pack(&name);
+        let words = self.methods.words(method, &given, self.folder);
+        let target = words.and_then(|words| Ok((self.methods.target(&name, method, &words, pack)?, words)));
+        match target {
+            Ok((target, words)) => Some((Way { method: method.to_owned(), words }, target)),
+            Err(wrong) => {
+                self.problems.of_option(&wrong, &given, entry.at, table);
+                None
+            }
+        }
+    }
+}
+
+fn dotted(table: &str, key: &str) -> String {
+    if table == key { key.to_owned() } else { format!("{table}.{key}") }
+}
+
+/// Keys of a table in the order of the file.
+fn entries<'a>(table: &'a DeTable<'a>) -> Vec<Entry<'a>> {
+    let entry = |(key, value): (&'a Spanned<_>, &'a Spanned<DeValue<'a>>)| {
+        let name: &'a std::borrow::Cow<'a, str> = key.get_ref();
+        Entry { key: name.as_ref(), value: value.get_ref(), at: key.span().start }
+    };
+    let mut all: Vec<Entry<'a>> = table.iter().map(entry).collect();
+    all.sort_by_key(|entry| entry.at);
+    all
+}
+
+/// Why a name cannot be that of a file beside the others.
+fn bad_name(name: &str, taken: Option<&str>) -> Option<String> {
+    const FORBIDDEN: &[char] = &['/', '\\', ':', '*', '?', '"', '<', '>', '|'];
+    if name.is_empty() || name.starts_with('.') || name.chars().any(|c| c.is_control() || FORBIDDEN.contains(&c)) {
+        return Some(
+            "a pack is named after it; expected a name without folders or characters that files cannot have".into(),
+        );
+    }
+    taken.map(|other| format!("a pack is named after it, and {other:?} is there already; give each a name of its own"))
+}
