@@ -22,7 +22,6 @@ use std::time::Instant;
 /// Lines that `--help` shows and a test runs.
 const EXAMPLES: &str = "\
 Examples:
-  glint-bake demo
   glint-bake demo --size 320x160 -o glint-demo";
 
 /// Bake a built-in example, verify it, and paint a picture of it

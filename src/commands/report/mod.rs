@@ -15,7 +15,7 @@ use std::path::PathBuf;
 /// Lines that `--help` shows and a test runs.
 const EXAMPLES: &str = "\
 Examples:
-  glint-bake report flakes.png --crop 4x4+0+0 --footprints 4 -o .";
+  glint-bake report flakes.png --crop 2x2+0+0 --footprints 1 -o .";
 
 /// Measure speed against error on examples
 ///
