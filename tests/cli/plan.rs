@@ -167,6 +167,9 @@ fn data() -> Option<PathBuf> {
     Some(folder)
 }
 
+/// A bake's flags, and its input in the data folder.
+type Accurate<'a> = (&'a [&'a str], &'a str);
+
 /// A close-up, a background, and both at once: each pack keeps its error at places that the plan did not see, and
 /// together they are at most a quarter of what everything takes at its most accurate.
 #[test]
@@ -197,7 +200,7 @@ fn three_scenes_take_a_quarter_and_keep_their_error() {
             "normals/technical_fabric_sheencloth_256_rgba.png",
             "method = 'area-light'\nbase-roughness = 0.2\ndistance = [2, 12]\ntexels-per-metre = 2500\n",
         );
-    let scenes: [(&str, String, Vec<(&[&str], &str)>); 3] = [
+    let scenes: [(&str, String, Vec<Accurate<'_>>); 3] = [
         (
             "hero",
             hero,
