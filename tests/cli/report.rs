@@ -8,8 +8,14 @@ use std::fs;
 #[test]
 fn a_report_has_its_tables_and_its_plot() {
     let folder = tempfile::tempdir().unwrap();
-    synthetic::leather(4, 4, 1).save(folder.path().join("leather.png")).unwrap();
-    bake(folder.path(), &["report", "leather.png", "-o", ".", "--footprints", "1"]).ok();
+    let path = folder.path().join("leather.png");
+    synthetic::leather(8, 8, 1).save(&path).unwrap();
+    fs::write(&path, tagged_srgb(&fs::read(&path).unwrap())).unwrap();
+    let report = ["report", "leather.png", "-o", ".", "--footprints", "1", "--crop", "4x4+2+1"];
+    let refused = bake(folder.path(), &report);
+    assert_eq!(refused.code, 4, "{}", refused.stderr);
+    assert!(refused.stderr.contains("--assume-linear"), "{}", refused.stderr);
+    bake(folder.path(), &[&report[..], &["--assume-linear"]].concat()).ok();
     let text = fs::read_to_string(folder.path().join("ACCURACY.md")).unwrap();
     for part in ["## leather, 4 × 4", "the paper's layout", "| tiled | 0.5 | 1 |", "| stochastic | 32 | 4 |", "★"] {
         assert!(text.contains(part), "{part} is missing from:\n{text}");
@@ -26,19 +32,4 @@ fn a_missing_folder_is_refused_before_any_work() {
     let outcome = bake(folder.path(), &["report", "none.png", "-o", "nowhere"]);
     assert_eq!(outcome.code, 3);
     assert!(outcome.stderr.contains("nowhere"), "{}", outcome.stderr);
-}
-
-#[test]
-fn a_report_takes_parts_of_maps_and_tagged_files_when_told() {
-    let folder = tempfile::tempdir().unwrap();
-    synthetic::leather(8, 8, 1).save(folder.path().join("plain.png")).unwrap();
-    let plain = fs::read(folder.path().join("plain.png")).unwrap();
-    fs::write(folder.path().join("tagged.png"), tagged_srgb(&plain)).unwrap();
-    let report = ["report", "tagged.png", "-o", ".", "--footprints", "1", "--crop", "2x2+1+0"];
-    let refused = bake(folder.path(), &report);
-    assert_eq!(refused.code, 4, "{}", refused.stderr);
-    assert!(refused.stderr.contains("--assume-linear"), "{}", refused.stderr);
-    bake(folder.path(), &[&report[..], &["--assume-linear"]].concat()).ok();
-    let text = fs::read_to_string(folder.path().join("ACCURACY.md")).unwrap();
-    assert!(text.contains("## tagged, 2 × 2"), "{text}");
 }
