@@ -6,6 +6,7 @@ pub mod dictionary;
 pub mod environment;
 pub mod error;
 pub mod footprint;
+pub mod lobes;
 pub mod ndf_maps;
 pub mod normal_map;
 mod pack_access;

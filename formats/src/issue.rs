@@ -99,6 +99,13 @@ issue_codes! {
     AreaLightRoughness = 3043, "area light roughness out of range";
     LtcShape = 3044, "LTC table of wrong format or size";
     LtcValue = 3045, "LTC table value out of range";
+    LobesParameters = 3050, "lobe parameter out of range";
+    LobesLevels = 3051, "lobe levels inconsistent";
+    LobesCount = 3052, "lobe count differs from levels";
+    LobeValue = 3053, "lobe value out of range";
+    LobeCellEmpty = 3054, "cell without lobes";
+    LobesNormalsShape = 3055, "lobe normals differ from parameters";
+    LobesNormal = 3056, "lobe normal out of range";
 }
 
 impl fmt::Display for IssueCode {

@@ -18,6 +18,8 @@ mod environment_check;
 mod error;
 mod issue;
 pub mod kinds;
+pub mod lobes;
+mod lobes_check;
 pub mod ndf_maps;
 mod ndf_maps_check;
 pub mod params;

@@ -6,6 +6,7 @@ mod demo;
 mod dictionary;
 mod environment;
 mod info;
+mod lobes;
 mod ndf_maps;
 mod preview;
 mod report;
@@ -29,6 +30,7 @@ pub struct Bake {
 #[derive(Subcommand, Debug)]
 enum Command {
     NdfMaps(Box<ndf_maps::Args>),
+    Lobes(Box<lobes::Args>),
     Dictionary(dictionary::Args),
     Environment(environment::Args),
     AreaLight(Box<area_light::Args>),
@@ -42,6 +44,7 @@ pub fn bake(cli: Bake) -> Result<(), Failure> {
     let terminal = Terminal::new(&cli.common);
     match cli.command {
         Command::NdfMaps(args) => ndf_maps::run(*args, terminal),
+        Command::Lobes(args) => lobes::run(*args, terminal),
         Command::Dictionary(args) => dictionary::run(&args, terminal),
         Command::Environment(args) => environment::run(&args, terminal),
         Command::AreaLight(args) => area_light::run(*args, terminal),

@@ -3,6 +3,7 @@
 mod area_light;
 mod dictionary;
 mod environment;
+mod lobes;
 mod material;
 pub mod plot;
 mod text;
@@ -10,6 +11,7 @@ mod text;
 pub use area_light::AreaLightInfo;
 pub use dictionary::DictionaryInfo;
 pub use environment::EnvironmentInfo;
+pub use lobes::LobesInfo;
 pub use material::MaterialInfo;
 pub use text::{kib, percent};
 
@@ -52,6 +54,8 @@ pub struct Report {
     pub environments: Vec<EnvironmentInfo>,
     /// Materials of the area-light method.
     pub area_lights: Vec<AreaLightInfo>,
+    /// MIP-mapped lobes.
+    pub lobes: Vec<LobesInfo>,
     /// Where the pack comes from.
     pub provenance: Vec<Provenance>,
     #[serde(skip)]
@@ -94,6 +98,7 @@ impl Report {
             dictionaries: Vec::new(),
             environments: Vec::new(),
             area_lights: Vec::new(),
+            lobes: Vec::new(),
             provenance: Vec::new(),
             pack: None,
         }
@@ -114,6 +119,7 @@ impl Report {
             report.dictionaries = DictionaryInfo::all_of(&pack);
             report.environments = EnvironmentInfo::all_of(&pack);
             report.area_lights = AreaLightInfo::all_of(&pack);
+            report.lobes = LobesInfo::all_of(&pack);
             report.provenance = decode_all(&pack, PROVENANCE);
         }
         report.pack = Some(pack);

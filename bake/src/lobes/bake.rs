@@ -1,0 +1,248 @@
+//! A normal map → MIP-mapped lobes: seeds, bottom-up reduction by cells, packed levels.
+//!
+//! Tan et al. 2022, section 5.1.2. Where the paper clusters every level from the texels, a level here reduces the lobes of
+//! the level below: cheaper, and closer to the map, since a good lobe is made once.
+
+use super::gaussian::Gaussian4;
+use super::merge::{self, MergeSettings};
+use super::options::{LobesOptions, NormalsChoice, ROUNDING};
+use super::quality::{self, Measured};
+use super::quantise::{self, Lobe};
+use super::query::QuerySettings;
+use super::reference::Reference;
+use super::seeds;
+use crate::error::Result;
+use crate::normal_map::NormalMap;
+use crate::progress::Progress;
+use crate::quality::sweep;
+use crate::rng::ItemRng;
+use glam::{DVec2, Vec2};
+use glint_formats::lobes::{FootprintError, LobeLevel, LobeStorage, LobesParams, NormalsStorage};
+use glint_formats::ndf_maps::Wrap;
+use rayon::prelude::*;
+
+/// Cells that are reduced from seeds, one a texel, in texels; half that for four seeds a texel. Finer than the stored levels:
+/// the cost of a reduction grows with the square of the parts of a cell.
+const SEED_CELL: u32 = 8;
+/// Footprint that cells of an edge are read with, over that edge: differences of position below it do not show.
+const BLUR_OF_CELL: f64 = 0.4;
+/// Sizes of footprints that the bake measures its error over, in texels, as far as the map goes.
+const MEASURED_SIGMAS: [f64; 5] = [2.0, 4.0, 8.0, 16.0, 32.0];
+
+/// MIP-mapped lobes of one map, ready for a pack.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BakedLobes {
+    /// Parameters.
+    pub params: LobesParams,
+    /// Records of all lobes.
+    pub lobes: Vec<u8>,
+    /// Texels of the normals.
+    pub normals: Vec<u8>,
+}
+
+impl BakedLobes {
+    /// Bytes that a renderer keeps.
+    pub fn gpu_bytes(&self) -> usize {
+        self.lobes.len() + self.normals.len()
+    }
+
+    /// A lobe by its index among all, which must be one of `level`.
+    pub fn lobe(&self, level: usize, index: u32) -> Lobe {
+        let stride = self.params.storage.stride() as usize;
+        let bytes = &self.lobes[index as usize * stride..][..stride];
+        let level = &self.params.levels[level];
+        match self.params.storage {
+            LobeStorage::Packed => quantise::decode_packed(&bytemuck::pod_read_unaligned(bytes), &self.params, level),
+            LobeStorage::Half => quantise::decode_half(&bytemuck::pod_read_unaligned(bytes), &self.params, level),
+        }
+    }
+
+    /// Projected normal of texel (i, j), wrapped or clamped.
+    pub fn texel(&self, i: i32, j: i32) -> Vec2 {
+        let (w, h) = (self.params.width as i32, self.params.height as i32);
+        let (i, j) = match self.params.wrap {
+            Wrap::Repeat => (i.rem_euclid(w), j.rem_euclid(h)),
+            Wrap::Clamp => (i.clamp(0, w - 1), j.clamp(0, h - 1)),
+        };
+        let at = (j * w + i) as usize * self.params.normals.texel_bytes();
+        let b = &self.normals[at..at + self.params.normals.texel_bytes()];
+        match self.params.normals {
+            NormalsStorage::Snorm16 => {
+                let snorm = |k: usize| i16::from_le_bytes([b[k], b[k + 1]]) as f32 / 32767.0;
+                Vec2::new(snorm(0), snorm(2))
+            }
+            NormalsStorage::Unorm8 => Vec2::new(b[0] as f32, b[1] as f32) / 255.0 * 2.0 - 1.0,
+        }
+    }
+}
+
+/// Bakes one map. Errors: an option out of range, or a map that is too large.
+pub fn bake(map: &NormalMap, options: &LobesOptions, progress: &dyn Progress) -> Result<BakedLobes> {
+    options.check(map)?;
+    let (storage, normals) = store_normals(map, options);
+    let [low, high] = normal_range(map);
+    let mut baked = BakedLobes {
+        params: LobesParams {
+            width: map.width,
+            height: map.height,
+            wrap: map.wrap,
+            filter: options.filter,
+            intrinsic_roughness: options.roughness as f32,
+            storage: options.storage,
+            normals: storage,
+            merge: options.merge,
+            seeds: options.seeds,
+            lobes_per_cell: options.lobes_per_cell,
+            normal_low: low.to_array(),
+            normal_extent: (high - low).to_array(),
+            levels: Vec::new(),
+            measured: Vec::new(),
+        },
+        lobes: Vec::new(),
+        normals,
+    };
+    build_levels(map, options, &mut baked, progress);
+    measure(map, options, &mut baked, progress);
+    Ok(baked)
+}
+
+/// Levels of cells from `SEED_CELL` or finer on, doubling, up to one cell.
+fn grids(map: &NormalMap, options: &LobesOptions) -> Vec<LobeLevel> {
+    let mut cell = options.cell_texels.min(if options.seeds == 4 { SEED_CELL / 2 } else { SEED_CELL });
+    let mut grids = Vec::new();
+    loop {
+        let (cells_x, cells_y) = (map.width.div_ceil(cell), map.height.div_ceil(cell));
+        grids.push(LobeLevel {
+            cell_texels: cell,
+            cells_x,
+            cells_y,
+            first_lobe: 0,
+            weight_scale: 1.0,
+            position_sigma: [1.0; 2],
+            residual_sigma: [0.0; 2],
+            jacobian_scale: 0.0,
+        });
+        if cell >= options.cell_texels && cells_x * cells_y == 1 {
+            return grids;
+        }
+        cell *= 2;
+    }
+}
+
+fn build_levels(map: &NormalMap, options: &LobesOptions, baked: &mut BakedLobes, progress: &dyn Progress) {
+    let grids = grids(map, options);
+    let count = |grid: &LobeLevel| grid.cells_x as usize * grid.cells_y as usize;
+    progress.begin("lobes", grids.iter().map(|grid| count(grid) as u64).sum());
+    let mut finer: Option<(LobeLevel, Vec<Vec<Gaussian4>>)> = None;
+    for (at, grid) in grids.iter().enumerate() {
+        let settings = MergeSettings {
+            merge: options.merge,
+            lobes: options.lobes_per_cell as usize,
+            blur: [BLUR_OF_CELL * grid.cell_texels as f64, options.roughness],
+        };
+        let cells: Vec<Vec<Gaussian4>> = (0..count(grid))
+            .into_par_iter()
+            .map(|cell| {
+                let (x, y) = (cell as u32 % grid.cells_x, cell as u32 / grid.cells_x);
+                let parts = match &finer {
+                    None => cell_seeds(map, options, grid, x, y),
+                    Some((below, cells)) => children(below, cells, x, y),
+                };
+                const PURPOSE: u32 = 7;
+                let mut rng = ItemRng::new(options.seed, PURPOSE + ((at as u32) << 8), cell as u32);
+                let lobes = merge::reduce(&parts, &settings, &mut rng);
+                progress.advance(1);
+                lobes
+            })
+            .collect();
+        if grid.cell_texels >= options.cell_texels {
+            store(grid, &cells, baked);
+        }
+        finer = Some((*grid, cells));
+    }
+    progress.end();
+}
+
+fn cell_seeds(map: &NormalMap, options: &LobesOptions, grid: &LobeLevel, x: u32, y: u32) -> Vec<Gaussian4> {
+    let segments = |cell: u32, size: u32| {
+        let (from, to) = (cell * grid.cell_texels, ((cell + 1) * grid.cell_texels).min(size));
+        seeds::segments(from, to, size, map.wrap, options.filter, options.seeds == 4)
+    };
+    let (columns, rows) = (segments(x, map.width), segments(y, map.height));
+    rows.iter().flat_map(|row| columns.iter().map(|column| seeds::seed(map, column, row))).collect()
+}
+
+fn children(below: &LobeLevel, cells: &[Vec<Gaussian4>], x: u32, y: u32) -> Vec<Gaussian4> {
+    let mut parts = Vec::new();
+    for j in 2 * y..(2 * y + 2).min(below.cells_y) {
+        for i in 2 * x..(2 * x + 2).min(below.cells_x) {
+            parts.extend_from_slice(&cells[(j * below.cells_x + i) as usize]);
+        }
+    }
+    parts
+}
+
+/// Appends a level's records.
+fn store(grid: &LobeLevel, cells: &[Vec<Gaussian4>], baked: &mut BakedLobes) {
+    let all: Vec<Gaussian4> = cells.iter().flatten().copied().collect();
+    let stride = baked.params.storage.stride() as usize;
+    let level = LobeLevel { first_lobe: (baked.lobes.len() / stride) as u32, ..quantise::ranges(&all, *grid) };
+    for (cell, lobes) in cells.iter().enumerate() {
+        let at = DVec2::new((cell as u32 % grid.cells_x) as f64, (cell as u32 / grid.cells_x) as f64);
+        let corner = at * grid.cell_texels as f64;
+        for k in 0..baked.params.lobes_per_cell as usize {
+            quantise::encode(lobes.get(k), corner, &baked.params, &level, &mut baked.lobes);
+        }
+    }
+    baked.params.levels.push(level);
+}
+
+fn normal_range(map: &NormalMap) -> [Vec2; 2] {
+    let texels = map.projected.iter().map(|s| Vec2::from(*s));
+    let (low, high) = texels.fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(lo, hi), s| (lo.min(s), hi.max(s)));
+    [low, high]
+}
+
+fn store_normals(map: &NormalMap, options: &LobesOptions) -> (NormalsStorage, Vec<u8>) {
+    let unorm = |v: f32| ((v + 1.0) * 127.5).round().clamp(0.0, 255.0);
+    let error: f64 = map.projected.iter().flatten().map(|v| ((unorm(*v) / 127.5 - 1.0 - v) as f64).powi(2)).sum();
+    let rms = (error / (2 * map.projected.len()) as f64).sqrt();
+    let small = match options.normals {
+        NormalsChoice::Auto => rms <= ROUNDING * options.roughness,
+        NormalsChoice::Unorm8 => true,
+        NormalsChoice::Snorm16 => false,
+    };
+    let values = map.projected.iter().flatten();
+    if small {
+        (NormalsStorage::Unorm8, values.map(|v| unorm(*v) as u8).collect())
+    } else {
+        let snorm = |v: &f32| ((v.clamp(-1.0, 1.0) * 32767.0).round() as i16).to_le_bytes();
+        (NormalsStorage::Snorm16, values.flat_map(snorm).collect())
+    }
+}
+
+/// Error over a few footprints a size, as the evaluator chooses levels.
+fn measure(map: &NormalMap, options: &LobesOptions, baked: &mut BakedLobes, progress: &dyn Progress) {
+    if options.footprints == 0 {
+        return;
+    }
+    const SEED: u64 = 11;
+    let extent = DVec2::new(map.width as f64, map.height as f64);
+    let sizes = MEASURED_SIGMAS.iter().filter(|sigma| **sigma <= 0.25 * extent.max_element().max(8.0));
+    progress.begin("error", sizes.clone().count() as u64);
+    let reference = Reference::new(map, options.filter, options.roughness);
+    let mut rows = Vec::new();
+    for &sigma in sizes {
+        let footprints = sweep::footprints(sigma, 1.0, extent, options.footprints, SEED);
+        let chosen = [(&*baked, Measured::Chosen(QuerySettings::default()))];
+        let errors = quality::footprint_errors(&reference, &chosen, &footprints, 2 * quality::STRIDE);
+        rows.push(FootprintError {
+            sigma_texels: sigma as f32,
+            mean: errors[0].e1.mean as f32,
+            worst: errors[0].e1.worst as f32,
+        });
+        progress.advance(1);
+    }
+    progress.end();
+    baked.params.measured = rows;
+}

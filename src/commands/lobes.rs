@@ -1,0 +1,285 @@
+//! `glint-bake lobes`: one normal map in, a verified pack out. First everything is checked, then work begins.
+
+use super::deliver::Delivery;
+use super::ndf_maps::{ChannelsArg, NormalY, WrapArg, digest, unique_name};
+use crate::cli::{RunFlags, Terminal, values};
+use crate::exit::{Exit, Failure};
+use crate::info::kib;
+use crate::input::{Crop, InputOptions, LoadedMap, load_normal_map};
+use crate::pack;
+use crate::progress::Stages;
+use clap::ValueEnum;
+use glint_bake_core::lobes::options::{LobesOptions, NormalsChoice, default_cell};
+use glint_bake_core::lobes::{self, BakedLobes, sections};
+use glint_formats::Codec;
+use glint_formats::lobes::{Filter, LobeStorage, Merge};
+use glint_formats::provenance::{InputDigest, Provenance};
+use std::path::PathBuf;
+
+/// What makes a pack smaller.
+const SMALLER: &str = "give a larger --cell, fewer lobes with --k, or a part of the map with --crop";
+
+/// Bake a normal map as MIP-mapped position-normal lobes
+///
+/// For maps with structure: scratches, leather, brushed metal. Texels become 4D Gaussians over position and normal, and the
+/// lobes of each cell of a MIP are reduced to a fixed number, so that a footprint of any size reads a few hundred.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Args {
+    /// Normal map: PNG, TGA, JPEG, TIFF, WebP or EXR
+    #[arg(value_name = "MAP")]
+    pub map: PathBuf,
+    /// Pack to write
+    #[arg(short, long, value_name = "PACK")]
+    pub output: PathBuf,
+    /// Name of the material [default: the file's name]
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<String>,
+
+    #[command(flatten)]
+    pub reduction: Reduction,
+    /// Compress the pack's sections with Zstandard
+    #[arg(long, help_heading = "Bake")]
+    pub compress: bool,
+
+    /// Use only this part of the map
+    #[arg(long, value_name = "WxH+X+Y", value_parser = values::crop, help_heading = "Input")]
+    pub crop: Option<Crop>,
+    /// Which way green points: up (OpenGL) or down (DirectX)
+    #[arg(long, value_name = "AXIS", default_value = "up", help_heading = "Input")]
+    pub normal_y: NormalY,
+    /// What lies beyond the map's edge
+    #[arg(long, value_name = "WRAP", default_value = "repeat", help_heading = "Input")]
+    pub wrap: WrapArg,
+    /// Channels that hold the normal; xy computes z
+    #[arg(long, value_name = "CHANNELS", default_value = "xyz", help_heading = "Input")]
+    pub channels: ChannelsArg,
+    /// Read a height map; SCALE is the height of white in texels
+    #[arg(long, value_name = "SCALE", value_parser = values::non_zero, allow_negative_numbers = true, help_heading = "Input")]
+    pub height: Option<f32>,
+    /// Take the values of a file tagged as sRGB as they are
+    #[arg(long, help_heading = "Input")]
+    pub assume_linear: bool,
+
+    #[command(flatten)]
+    run: RunFlags,
+}
+
+/// How the map becomes lobes.
+#[derive(clap::Args, Clone, Debug)]
+#[command(next_help_heading = "Bake")]
+pub struct Reduction {
+    /// Intrinsic roughness that lobes are merged for, 0.0001 to 1: standard deviation of each normal's lobe in the
+    /// projected-normal disk. A default for the renderer, nothing stored contains it
+    #[arg(long, value_name = "SIGMA", default_value = "0.02", value_parser = values::positive)]
+    pub roughness: f64,
+    /// Lobes a cell, 1 to 256
+    #[arg(long, value_name = "LOBES", default_value = "32")]
+    pub k: u32,
+    /// Edge of the finest cells in texels: 4, 8, 16, 32 or 64 [default: 8, for maps above 512 x 512 texels 16]
+    #[arg(long, value_name = "TEXELS")]
+    pub cell: Option<u32>,
+    /// How the lobes of a cell are reduced
+    #[arg(long, value_name = "MERGE", default_value = "runnalls")]
+    pub merge: MergeArg,
+    /// Lobes a texel to begin with: 1 or 4
+    #[arg(long, value_name = "N", default_value = "4")]
+    pub seeds: u32,
+    /// Take each texel's normal as it is, without filtering: for maps of flakes
+    #[arg(long)]
+    pub nearest: bool,
+    /// How lobes are stored
+    #[arg(long, value_name = "STORAGE", default_value = "packed")]
+    pub storage: StorageArg,
+    /// Bits a channel of the stored normals
+    #[arg(long, value_name = "BITS", default_value = "auto")]
+    pub normals: NormalsArg,
+    /// Error E1 asked of every footprint size that the bake measures, on average; missing it fails the bake
+    #[arg(long, value_name = "E1", value_parser = values::positive)]
+    pub max_error: Option<f64>,
+    /// Seed of random numbers; only k-means draws any
+    #[arg(long, value_name = "SEED", default_value = "1")]
+    pub seed: u64,
+}
+
+/// How the lobes of a cell are reduced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MergeArg {
+    /// k-means with averaged parameters, as in the paper; a baseline
+    Kmeans,
+    /// k-means; lobes of the clusters' own mean and covariance
+    Moments,
+    /// the cheapest pair again and again (Runnalls); lobes of the pair's mean and covariance
+    Runnalls,
+}
+
+/// How lobes are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum StorageArg {
+    /// 16 bytes a lobe
+    Packed,
+    /// half floats, 32 bytes a lobe
+    F16,
+}
+
+/// How normals are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum NormalsArg {
+    /// 8 where rounding does not show at the roughness, else 16
+    Auto,
+    /// 2 bytes a texel
+    #[value(name = "8")]
+    Eight,
+    /// 4 bytes a texel
+    #[value(name = "16")]
+    Sixteen,
+}
+
+/// Runs the subcommand.
+pub fn run(args: Args, terminal: Terminal) -> Result<(), Failure> {
+    let threads = args.run.threads;
+    super::on_threads(threads, || bake(&args, terminal))?
+}
+
+fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
+    args.reduction.options(1, 1).validate()?;
+    let name = args.name()?;
+    let inputs = [args.map.clone()];
+    let delivery = Delivery { output: &args.output, inputs: &inputs, run: &args.run };
+    delivery.check()?;
+    let loaded = load_normal_map(&args.map, &args.input_options())?;
+    let digest = digest(&args.map, &loaded)?;
+    for warning in &loaded.warnings {
+        terminal.warn(&format!("{}: {warning}", args.map.display()));
+    }
+    let (width, height) = (loaded.map.width, loaded.map.height);
+    let options = args.reduction.options(width, height);
+    options.check(&loaded.map).map_err(|e| Failure::bake(&args.map, &e))?;
+    let bytes = options.most_bytes(width, height);
+    delivery.check_size(bytes, SMALLER)?;
+    let line = format!(
+        "{width} × {height} texels, {} lobes a cell of {} texels, {} at most",
+        options.lobes_per_cell,
+        options.cell_texels,
+        kib(bytes)
+    );
+    if args.run.dry_run {
+        let output = args.output.display();
+        terminal.say(&format!("would write {output}: \"{name}\", {line}; dry run, nothing was written"));
+        return Ok(());
+    }
+    terminal.detail(&format!("{}: {line}, {}", args.map.display(), loaded.convention));
+    let baked = lobes::bake(&loaded.map, &options, &Stages::new(terminal)).map_err(|e| Failure::bake(&args.map, &e))?;
+    args.check_error(&baked)?;
+    let codec = if args.compress { Codec::Zstd } else { Codec::None };
+    let sections = sections::to_sections(&name, &baked, codec);
+    let bytes = pack::seal(&args.provenance(&options, &loaded, digest), sections)?;
+    delivery.write(bytes, SMALLER, terminal)
+}
+
+impl Reduction {
+    /// Options for a map of this size.
+    fn options(&self, width: u32, height: u32) -> LobesOptions {
+        LobesOptions {
+            roughness: self.roughness,
+            lobes_per_cell: self.k,
+            cell_texels: self.cell.unwrap_or_else(|| default_cell(width, height)),
+            merge: match self.merge {
+                MergeArg::Kmeans => Merge::KMeans,
+                MergeArg::Moments => Merge::Moments,
+                MergeArg::Runnalls => Merge::Runnalls,
+            },
+            seeds: self.seeds,
+            filter: if self.nearest { Filter::Nearest } else { Filter::Linear },
+            storage: match self.storage {
+                StorageArg::Packed => LobeStorage::Packed,
+                StorageArg::F16 => LobeStorage::Half,
+            },
+            normals: match self.normals {
+                NormalsArg::Auto => NormalsChoice::Auto,
+                NormalsArg::Eight => NormalsChoice::Unorm8,
+                NormalsArg::Sixteen => NormalsChoice::Snorm16,
+            },
+            seed: self.seed,
+            ..LobesOptions::default()
+        }
+    }
+}
+
+impl Args {
+    fn name(&self) -> Result<String, Failure> {
+        use glint_formats::container::MAX_NAME_BYTES;
+        let Some(name) = &self.name else { return Ok(unique_name(&self.map, &[])) };
+        if name.is_empty() || name.len() > MAX_NAME_BYTES || name.chars().any(char::is_control) {
+            return Err(Failure::usage(format!(
+                "--name: expected 1 to {MAX_NAME_BYTES} bytes without control characters, found {name:?}"
+            )));
+        }
+        Ok(name.clone())
+    }
+
+    fn input_options(&self) -> InputOptions {
+        InputOptions {
+            y: self.normal_y.into(),
+            wrap: self.wrap.into(),
+            channels: self.channels.into(),
+            height: self.height,
+            crop: self.crop,
+            assume_linear: self.assume_linear,
+            max_memory: self.run.max_memory,
+        }
+    }
+
+    /// When the user named an error, missing it at any size is a failure.
+    fn check_error(&self, baked: &BakedLobes) -> Result<(), Failure> {
+        let Some(asked) = self.reduction.max_error else { return Ok(()) };
+        let Some(missed) = baked.params.measured.iter().find(|row| f64::from(row.mean) > asked) else { return Ok(()) };
+        let message = format!(
+            "{}: expected E1 of {asked} on average at every footprint size, found {:.5} at {} texels; nothing was written. \
+             Raise --max-error, --k or --roughness, or give --storage f16",
+            self.map.display(),
+            missed.mean,
+            missed.sigma_texels
+        );
+        Err(Failure::new(Exit::LimitExceeded, message))
+    }
+
+    /// Where the pack comes from. Flags that do not change its bytes are left out.
+    fn provenance(&self, used: &LobesOptions, loaded: &LoadedMap, digest: InputDigest) -> Provenance {
+        let debug = |value: &dyn std::fmt::Debug| format!("{value:?}").to_ascii_lowercase();
+        let of = &self.reduction;
+        let mut options = vec![
+            ("roughness", of.roughness.to_string()),
+            ("k", of.k.to_string()),
+            ("cell", used.cell_texels.to_string()),
+            ("merge", debug(&of.merge)),
+            ("seeds", of.seeds.to_string()),
+            ("nearest", of.nearest.to_string()),
+            ("storage", debug(&of.storage)),
+            ("normals", of.normals.to_possible_value().map_or_else(String::new, |v| v.get_name().to_owned())),
+            ("normal-y", debug(&self.normal_y)),
+            ("wrap", debug(&self.wrap)),
+            ("channels", debug(&self.channels)),
+        ];
+        if let Some(error) = of.max_error {
+            options.push(("max-error", error.to_string()));
+        }
+        if let Some(c) = self.crop {
+            options.push(("crop", format!("{}x{}+{}+{}", c.w, c.h, c.x, c.y)));
+        }
+        if let Some(scale) = self.height {
+            options.push(("height", scale.to_string()));
+        }
+        if self.assume_linear {
+            options.push(("assume-linear", "true".into()));
+        }
+        let notes = loaded.warnings.iter().map(|warning| format!("{}: {warning}", digest.name)).collect();
+        Provenance {
+            options: options.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
+            seed: of.seed,
+            inputs: vec![digest],
+            normal_convention: format!("y-{}", debug(&self.normal_y)),
+            notes,
+            ..pack::provenance("lobes")
+        }
+    }
+}
