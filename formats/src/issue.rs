@@ -99,6 +99,10 @@ issue_codes! {
     AreaLightRoughness = 3043, "area light roughness out of range";
     LtcShape = 3044, "LTC table of wrong format or size";
     LtcValue = 3045, "LTC table value out of range";
+    SynthesisParameters = 3060, "synthesis parameter out of range";
+    SynthesisShape = 3061, "synthesis buffer differs from parameters";
+    SynthesisOffset = 3062, "synthesis patch outside sample";
+    SynthesisSeam = 3063, "synthesis seam path broken";
 }
 
 impl fmt::Display for IssueCode {
