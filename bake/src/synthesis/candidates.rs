@@ -8,13 +8,23 @@ use glint_formats::ndf_maps::Wrap;
 /// Purpose of the random numbers that thin out candidates.
 const PURPOSE: u32 = 50;
 
+/// How much of a patch another shows too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum Likeness {
+    /// Half of its texels at most.
+    Different,
+    /// More than half: near by, they would be seen as a repetition.
+    Alike,
+    /// More than three quarters.
+    NearlyEqual,
+}
+
 /// The offsets among which patches are chosen.
 pub struct Candidates {
     /// Offsets in texels, row by row.
     pub offsets: Vec<[u16; 2]>,
-    sides: [i32; 2],
-    wrap: Wrap,
-    patch: i32,
+    likeness: Vec<Likeness>,
 }
 
 impl Candidates {
@@ -36,12 +46,9 @@ impl Candidates {
             picked.sort_unstable();
         }
         let offset = |at: u32| [columns[at as usize % columns.len()], rows[at as usize / columns.len()]];
-        Candidates {
-            offsets: picked.into_iter().map(offset).collect(),
-            sides: [sample.width as i32, sample.height as i32],
-            wrap: sample.wrap,
-            patch: options.patch as i32,
-        }
+        let offsets: Vec<[u16; 2]> = picked.into_iter().map(offset).collect();
+        let likeness = offsets.iter().flat_map(|&a| offsets.iter().map(move |&b| likeness(sample, options.patch, a, b)));
+        Candidates { likeness: likeness.collect(), offsets }
     }
 
     /// Number of candidates.
@@ -49,26 +56,34 @@ impl Candidates {
         self.offsets.len()
     }
 
-    /// Texels along x and y between two offsets, the short way round where the sample repeats.
-    fn apart(&self, a: usize, b: usize) -> [i32; 2] {
-        std::array::from_fn(|axis| {
-            let d = (i32::from(self.offsets[a][axis]) - i32::from(self.offsets[b][axis])).abs();
-            if self.wrap == Wrap::Repeat { d.min(self.sides[axis] - d) } else { d }
-        })
+    /// Whether there are none, which options that fit the sample rule out.
+    pub fn is_empty(&self) -> bool {
+        self.offsets.is_empty()
     }
 
-    /// Whether two patches share more than half of their texels: side by side they would be seen as a repetition.
+    /// How much of a candidate's patch every other shows.
+    pub fn likeness(&self, candidate: usize) -> &[Likeness] {
+        &self.likeness[candidate * self.len()..][..self.len()]
+    }
+
+    /// Whether two patches share more than half of their texels.
     pub fn alike(&self, a: usize, b: usize) -> bool {
-        self.shared(a, b) * 2 > self.patch * self.patch
+        self.likeness(a)[b] >= Likeness::Alike
     }
+}
 
-    /// Whether two patches share more than three quarters of their texels.
-    pub fn nearly_equal(&self, a: usize, b: usize) -> bool {
-        self.shared(a, b) * 4 > 3 * self.patch * self.patch
-    }
-
-    fn shared(&self, a: usize, b: usize) -> i32 {
-        let [x, y] = self.apart(a, b);
-        (self.patch - x).max(0) * (self.patch - y).max(0)
+/// How much two patches share, moved the short way round where the sample repeats.
+fn likeness(sample: &NormalMap, patch: u32, a: [u16; 2], b: [u16; 2]) -> Likeness {
+    let sides = [sample.width, sample.height];
+    let shared: u32 = (0..2)
+        .map(|axis| {
+            let d = u32::from(a[axis].abs_diff(b[axis]));
+            patch.saturating_sub(if sample.wrap == Wrap::Repeat { d.min(sides[axis] - d) } else { d })
+        })
+        .product();
+    match shared {
+        _ if shared * 4 > 3 * patch * patch => Likeness::NearlyEqual,
+        _ if shared * 2 > patch * patch => Likeness::Alike,
+        _ => Likeness::Different,
     }
 }

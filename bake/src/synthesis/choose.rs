@@ -1,20 +1,39 @@
 //! Which part of the sample each patch shows: section 5.1.1, step 3, of Tan et al. 2022.
 //!
 //! Patches are placed in raster order. Of the candidates within the error tolerance one is picked by the seed, and where
-//! there is none, the one of least error. Deviations:
+//! there is none, one of least error. Deviations:
+//! - errors are in units of the distance of neighbours in the sample, along rows for patches side by side, along columns
+//!   for those above: across the streaks of a brushed map texels differ anyway, along them a seam is seen;
+//! - an error next to the least (within 10 %) is as good as the least;
 //! - the grid is a torus: a patch also fits the neighbours across the edge that are placed already, so the surface repeats
 //!   without a seam;
 //! - of the candidates within tolerance the least used are preferred, so that the surface has the normals of the sample in
 //!   nearly the same shares;
 //! - patches that show much the same as one near by are left out ([`Radii`]), or the eye finds the repetition.
 
-use super::candidates::Candidates;
+use super::candidates::{Candidates, Likeness};
 use super::strips::PairErrors;
 use crate::progress::Progress;
 use crate::rng::ItemRng;
 
 /// Purpose of the random numbers that choose patches.
-const PURPOSE: u32 = 51;
+pub(super) const PURPOSE: u32 = 51;
+
+/// How much larger than the least error, relatively, an error is that counts as equal to it.
+const SLACK: f64 = 0.1;
+
+/// Picks a candidate: of those whose error is within `tolerance`, or next to the least there is, the least used; of these
+/// one by chance. Barred ones are left out unless all are.
+pub(super) fn pick(errors: &[f64], barred: &[bool], used: &[u32], tolerance: f64, rng: &mut ItemRng) -> usize {
+    let any = barred.contains(&false);
+    let allowed = |&c: &usize| !any || !barred[c];
+    let least = (0..errors.len()).filter(allowed).map(|c| errors[c]).fold(f64::INFINITY, f64::min);
+    let limit = tolerance.max(least * (1.0 + SLACK));
+    let good: Vec<usize> = (0..errors.len()).filter(allowed).filter(|&c| errors[c] <= limit).collect();
+    let fewest = good.iter().map(|&c| used[c]).min().unwrap_or(0);
+    let best: Vec<usize> = good.into_iter().filter(|&c| used[c] == fewest).collect();
+    best[rng.below(best.len() as u32) as usize]
+}
 
 /// How many patches apart, along either axis, two patches lie that may be alike, and nearly equal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,17 +94,10 @@ impl Choice<'_> {
 
     fn pick(&self, at: u32, placed: &[u32], used: &[u32]) -> usize {
         let (column, row) = (at % self.columns, at / self.columns);
-        let (sums, overlaps) = self.sums(column, row, placed);
+        let (errors, overlaps) = self.sums(column, row, placed);
         let barred = self.barred(column, row, placed);
-        // Where everything is barred, as in a sample of one patch, nothing is.
-        let any = barred.contains(&false);
-        let allowed = |&c: &usize| !any || !barred[c];
-        let least = (0..sums.len()).filter(allowed).map(|c| sums[c]).fold(f64::INFINITY, f64::min);
-        let limit = least.max(self.tolerance * overlaps);
-        let good = |c: &usize| allowed(c) && sums[*c] <= limit;
-        let fewest = (0..sums.len()).filter(good).map(|c| used[c]).min().unwrap_or(0);
-        let best: Vec<usize> = (0..sums.len()).filter(good).filter(|&c| used[c] == fewest).collect();
-        best[ItemRng::new(self.seed, PURPOSE, at).below(best.len() as u32) as usize]
+        let mut rng = ItemRng::new(self.seed, PURPOSE, at);
+        pick(&errors, &barred, used, self.tolerance * overlaps, &mut rng)
     }
 
     /// Sum over the overlaps with placed neighbours of every candidate's mean error, in units, and how many overlaps those
@@ -125,23 +137,28 @@ impl Choice<'_> {
 
     /// Candidates that show much the same as a patch near by, on the torus.
     fn barred(&self, column: u32, row: u32, placed: &[u32]) -> Vec<bool> {
-        let mut near_by = Vec::new();
-        let reach = self.radii.alike.max(self.radii.nearly_equal) as i64;
+        let mut barred = vec![false; self.candidates.len()];
+        let reach = i64::from(self.radii.alike.max(self.radii.nearly_equal));
         let (columns, rows) = (i64::from(self.columns), i64::from(self.rows));
         // On a small torus a patch is met from several sides; each counts once, by its least distance.
         let span = |n: i64| if 2 * reach + 1 >= n { -(n / 2)..(n + 1) / 2 } else { -reach..reach + 1 };
         for dy in span(rows) {
             for dx in span(columns) {
                 let at = (i64::from(row) + dy).rem_euclid(rows) * columns + (i64::from(column) + dx).rem_euclid(columns);
+                let distance = dx.abs().max(dy.abs()) as u32;
+                let from = match distance {
+                    d if d <= self.radii.alike => Likeness::Alike,
+                    d if d <= self.radii.nearly_equal => Likeness::NearlyEqual,
+                    _ => continue,
+                };
                 if let Some(&other) = placed.get(at as usize) {
-                    near_by.push((other as usize, dx.abs().max(dy.abs()) as u32));
+                    let likeness = self.candidates.likeness(other as usize);
+                    for (barred, &likeness) in barred.iter_mut().zip(likeness) {
+                        *barred |= likeness >= from;
+                    }
                 }
             }
         }
-        let clash = |c: usize, &(other, distance): &(usize, u32)| {
-            (distance <= self.radii.alike && self.candidates.alike(c, other))
-                || (distance <= self.radii.nearly_equal && self.candidates.nearly_equal(c, other))
-        };
-        (0..self.candidates.len()).map(|c| near_by.iter().any(|other| clash(c, other))).collect()
+        barred
     }
 }

@@ -180,6 +180,6 @@ impl SynthesisOptions {
     fn table_bytes(&self) -> u64 {
         let candidates = u64::from(self.max_candidates);
         let strip = u64::from(self.overlap) * u64::from(self.patch + self.overlap) * 12;
-        candidates * strip * 4 + candidates * candidates * 8
+        candidates * strip * 4 + candidates * candidates * 9
     }
 }

@@ -11,6 +11,7 @@
 
 use super::bake::{Synthesis, params};
 use super::candidates::Candidates;
+use super::choose::pick;
 use super::features::{COUNT, Feature, Features, distance};
 use super::options::SynthesisOptions;
 use super::seams::{cut, push_path};
@@ -20,10 +21,12 @@ use crate::rng::ItemRng;
 use glint_formats::synthesis::Layout;
 use rayon::prelude::*;
 
-/// Purpose of the random numbers that choose corner patches and middle patches.
+/// Purpose of the random numbers that choose middle patches.
 const PURPOSE: u32 = 52;
-/// Rounds in which every corner patch is exchanged for a better one.
-const ROUNDS: usize = 2;
+/// Purpose of the random numbers that choose corner patches.
+const PURPOSE_CORNERS: u32 = 53;
+/// Sets of corner patches among which one is chosen.
+const DRAWS: u32 = 32;
 
 /// Synthesises tiles of `colours` corner colours, `variants` for each four of them.
 pub(super) fn corner_tiles(
@@ -42,6 +45,7 @@ pub(super) fn corner_tiles(
         edge: options.patch as i32,
         overlap: options.overlap as i32,
         margin: options.margin() as i32,
+        units: features.neighbour_distance(),
     };
     let corners = frame.corner_patches(colours as usize, options.seed);
     let mut seams = Vec::with_capacity(params.seam_words() as usize);
@@ -77,6 +81,8 @@ struct Frame<'a> {
     edge: i32,
     overlap: i32,
     margin: i32,
+    /// Mean distance of neighbours in the sample along rows and along columns.
+    units: [f64; 2],
 }
 
 impl Frame<'_> {
@@ -105,43 +111,44 @@ impl Frame<'_> {
         cut(&self.pair_costs(first, second, below), self.overlap as usize)
     }
 
-    fn pair_error(&self, first: usize, second: usize) -> u64 {
-        [false, true].iter().flat_map(|&below| self.pair_costs(first, second, below)).map(u64::from).sum()
+    /// Error of the second corner patch beside and below the first, in units of the distance of neighbours.
+    fn pair_error(&self, first: usize, second: usize) -> f64 {
+        let sum = |below| self.pair_costs(first, second, below).into_iter().map(u64::from).sum::<u64>() as f64;
+        sum(false) / self.units[0] + sum(true) / self.units[1]
     }
 
-    /// Corner patches that fit each other in every order. Begins with seeded ones and exchanges each for the best there is,
-    /// in turn; none shows much of what another does, as far as the sample has enough.
+    /// Corner patches: of [`DRAWS`] seeded sets the one whose patches fit each other best. None shows much of what another
+    /// does, as far as the sample has enough. More draws would find patches that are all alike where they meet, and every
+    /// tile would show it.
     fn corner_patches(&self, colours: usize, seed: u64) -> Vec<usize> {
-        let count = self.candidates.len() as u32;
-        let mut rng = ItemRng::new(seed, PURPOSE, 0);
-        let mut picked: Vec<usize> = Vec::new();
-        while picked.len() < colours {
-            let free: Vec<usize> = (0..count as usize).filter(|&c| self.apart(c, &picked, None)).collect();
-            let from = if free.is_empty() { (0..count as usize).collect() } else { free };
-            picked.push(from[rng.below(from.len() as u32) as usize]);
-        }
-        for _ in 0..ROUNDS {
-            for k in 0..colours {
-                let others: Vec<usize> = (0..colours).filter(|&o| o != k).map(|o| picked[o]).collect();
-                let error = |c: usize| {
-                    let with = |&o: &usize| self.pair_error(c, o) + self.pair_error(o, c);
-                    self.pair_error(c, c) + others.iter().map(with).sum::<u64>()
-                };
-                let best = (0..count as usize)
-                    .into_par_iter()
-                    .filter(|&c| self.apart(c, &picked, Some(k)))
-                    .map(|c| (error(c), c))
-                    .min();
-                if let Some((_, best)) = best {
-                    picked[k] = best;
+        let drawn = |draw: u32| {
+            let mut rng = ItemRng::new(seed, PURPOSE_CORNERS, draw);
+            let mut picked: Vec<usize> = Vec::new();
+            while picked.len() < colours {
+                let mut from: Vec<usize> = (0..self.candidates.len()).filter(|&c| self.apart(c, &picked)).collect();
+                if from.is_empty() {
+                    from.extend(0..self.candidates.len());
                 }
+                picked.push(from[rng.below(from.len() as u32) as usize]);
+            }
+            picked
+        };
+        let sets: Vec<Vec<usize>> = (0..DRAWS).map(drawn).collect();
+        let error = |set: &Vec<usize>| -> f64 {
+            set.iter().flat_map(|&a| set.iter().map(move |&b| (a, b))).map(|(a, b)| self.pair_error(a, b)).sum()
+        };
+        let errors: Vec<f64> = sets.par_iter().map(error).collect();
+        let mut best = 0;
+        for k in 0..sets.len() {
+            if errors[k] < errors[best] {
+                best = k;
             }
         }
-        picked
+        sets[best].clone()
     }
 
-    fn apart(&self, candidate: usize, picked: &[usize], but: Option<usize>) -> bool {
-        picked.iter().enumerate().all(|(k, &other)| Some(k) == but || !self.candidates.alike(candidate, other))
+    fn apart(&self, candidate: usize, picked: &[usize]) -> bool {
+        picked.iter().all(|&other| !self.candidates.alike(candidate, other))
     }
 
     /// The texels of a tile that lie under the cuts of its middle patch: left, upper, right, lower; of each side row by
@@ -220,35 +227,30 @@ impl Base<'_> {
     ) -> Vec<usize> {
         let (frame, count) = (self.frame, self.frame.candidates.len());
         let sides = frame.sides().concat();
-        let length = sides.len() * COUNT;
-        let [along_rows, along_columns] = frame.features.neighbour_distance();
-        let tolerance = options.error_tolerance * 0.5 * (along_rows + along_columns) * sides.len() as f64;
-        let mut used = vec![0u32; count];
-        let mut picked: Vec<usize> = Vec::with_capacity(tiles);
+        let side = sides.len() / 4 * COUNT;
+        let tolerance = options.error_tolerance * sides.len() as f64;
         let rings: Vec<i16> = (0..count)
             .into_par_iter()
             .flat_map_iter(|c| sides.iter().flat_map(move |&(x, y)| frame.texel(c, x, y)))
             .collect();
+        let error = |of: &[i16], ring: &[i16]| -> f64 {
+            let side = |k: usize| sum_of_squares(&of[k * side..][..side], &ring[k * side..][..side]) as f64;
+            (side(0) + side(2)) / frame.units[0] + (side(1) + side(3)) / frame.units[1]
+        };
+        let mut used = vec![0u32; count];
+        let mut picked: Vec<usize> = Vec::with_capacity(tiles);
         for tile in 0..tiles / variants {
             let ring = self.ring(tile);
-            let errors: Vec<u64> = if length == 0 {
-                vec![0; count]
-            } else {
-                rings.par_chunks_exact(length).map(|candidate| sum_of_squares(candidate, &ring)).collect()
-            };
+            let errors: Vec<f64> =
+                (0..count).into_par_iter().map(|c| error(&rings[c * 4 * side..][..4 * side], &ring)).collect();
             let corners = self.colours_of(tile).map(|colour| self.corners[colour]);
             for variant in 0..variants {
                 let siblings = &picked[picked.len() - variant..];
-                let clash = |c: usize| corners.iter().chain(siblings).any(|&other| frame.candidates.alike(c, other));
-                let free: Vec<usize> = (0..count).filter(|&c| !clash(c)).collect();
-                let from = if free.is_empty() { (0..count).collect() } else { free };
-                let least = from.iter().map(|&c| errors[c]).min().unwrap_or(0);
-                let limit = (least as f64).max(tolerance);
-                let good = |c: &&usize| errors[**c] as f64 <= limit;
-                let fewest = from.iter().filter(good).map(|&c| used[c]).min().unwrap_or(0);
-                let best: Vec<usize> = from.iter().filter(good).copied().filter(|&c| used[c] == fewest).collect();
-                let mut rng = ItemRng::new(options.seed, PURPOSE, 1 + picked.len() as u32);
-                let chosen = best[rng.below(best.len() as u32) as usize];
+                let barred: Vec<bool> = (0..count)
+                    .map(|c| corners.iter().chain(siblings).any(|&other| frame.candidates.alike(c, other)))
+                    .collect();
+                let mut rng = ItemRng::new(options.seed, PURPOSE, picked.len() as u32);
+                let chosen = pick(&errors, &barred, &used, tolerance, &mut rng);
                 used[chosen] += 1;
                 picked.push(chosen);
                 progress.advance(1);
