@@ -6,6 +6,7 @@
 
 use super::Synthesis;
 use super::eval_tiles::{Tiles, tile_source};
+use glint_formats::ndf_maps::Wrap;
 use glint_formats::synthesis::{Layout, PathShape};
 
 /// Edge of the finest blocks, in texels: the cells of the finest clustered level.
@@ -56,7 +57,7 @@ impl Synthesis {
     }
 
     /// The block of `size` texels at the surface texel (x, y), as [`Synthesis::source_block`], where the sample's cells of
-    /// that size begin at all multiples of `step`.
+    /// that size begin at all multiples of `step`; those of a sample that repeats in whole steps go on across its edge.
     pub fn block_source(&self, x: i32, y: i32, size: i32, step: u32) -> Option<(u32, u32)> {
         let (low, high) = self.untouched();
         let edge = self.params.patch as i32;
@@ -79,7 +80,8 @@ impl Synthesis {
 
     fn aligned(&self, place: Place, size: i32, step: u32) -> Option<(u32, u32)> {
         let (x, y) = self.in_sample(place);
-        let fits = |v: u32, side: u32| v.is_multiple_of(step) && v as i32 + size <= side as i32;
+        let crosses = |side: u32| self.params.wrap == Wrap::Repeat && side.is_multiple_of(step);
+        let fits = |v: u32, side: u32| v.is_multiple_of(step) && (v as i32 + size <= side as i32 || crosses(side));
         (fits(x, self.params.sample_width) && fits(y, self.params.sample_height)).then_some((x, y))
     }
 
