@@ -122,9 +122,11 @@ fn patches_of_a_sample_that_does_not_repeat_never_cross_its_edge() {
 fn whole_blocks_show_a_block_of_the_sample_and_nominal_ones_most_of_it() {
     let map = noise(104, 104, Wrap::Repeat);
     let mut coarse = 0;
-    for (target, patch, overlap) in
-        [(Target::Patches { width: 256, height: 224 }, 32, 8), (Target::Patches { width: 256, height: 224 }, 32, 3), (UNBOUNDED, 48, 4)]
-    {
+    for (target, patch, overlap) in [
+        (Target::Patches { width: 256, height: 224 }, 32, 8),
+        (Target::Patches { width: 256, height: 224 }, 32, 3),
+        (UNBOUNDED, 48, 4),
+    ] {
         let surface = baked(&map, &SynthesisOptions { patch, overlap, ..options(target) });
         let mut whole = [0; 3];
         for (log2_size, count) in whole.iter_mut().enumerate() {

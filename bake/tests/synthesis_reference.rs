@@ -120,7 +120,8 @@ fn packed_paths_are_read_back() {
 
 #[test]
 fn a_look_up_is_the_pasted_image() {
-    let cases = [(60, 48, 4, Wrap::Repeat), (50, 41, 6, Wrap::Clamp), (60, 60, 1, Wrap::Repeat), (30, 30, 0, Wrap::Clamp)];
+    let cases =
+        [(60, 48, 4, Wrap::Repeat), (50, 41, 6, Wrap::Clamp), (60, 60, 1, Wrap::Repeat), (30, 30, 0, Wrap::Clamp)];
     for (across, down, overlap, wrap) in cases {
         let map = sample(34, 40, wrap);
         let surface = baked(&map, &SynthesisOptions { overlap, ..patches(across, down) });
@@ -185,7 +186,8 @@ fn stored_seams_are_the_least_over_what_lies_below() {
 
 #[test]
 fn corner_tiles_are_the_pasted_window() {
-    for (colours, variants, overlap, wrap) in [(2, 1, 4, Wrap::Repeat), (3, 2, 6, Wrap::Clamp), (1, 3, 1, Wrap::Repeat)] {
+    for (colours, variants, overlap, wrap) in [(2, 1, 4, Wrap::Repeat), (3, 2, 6, Wrap::Clamp), (1, 3, 1, Wrap::Repeat)]
+    {
         let map = sample(72, 64, wrap);
         let target = Target::Unbounded { colours, variants };
         let surface = baked(&map, &SynthesisOptions { overlap, patch: 40, ..options(target) });

@@ -168,7 +168,8 @@ mod tests {
 
     #[test]
     fn paths_take_the_bits_that_a_choice_needs() {
-        for (overlap, bits, per_word) in [(0, 0, 0), (1, 0, 0), (2, 1, 32), (3, 2, 16), (4, 2, 16), (5, 3, 10), (64, 6, 5)]
+        for (overlap, bits, per_word) in
+            [(0, 0, 0), (1, 0, 0), (2, 1, 32), (3, 2, 16), (4, 2, 16), (5, 3, 10), (64, 6, 5)]
         {
             let shape = PathShape::new(70, overlap);
             assert_eq!((shape.bits, shape.per_word), (bits, per_word), "{overlap}");

@@ -38,7 +38,11 @@ fn check_synthesis(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Ve
 }
 
 fn in_range(what: &str, (low, high): (u32, u32), found: u32) -> Result<(), String> {
-    if (low..=high).contains(&found) { Ok(()) } else { Err(format!("expected {what} of {low} to {high}, found {found}")) }
+    if (low..=high).contains(&found) {
+        Ok(())
+    } else {
+        Err(format!("expected {what} of {low} to {high}, found {found}"))
+    }
 }
 
 fn check_parameters(params: &SynthesisParams) -> Result<(), String> {
@@ -130,10 +134,7 @@ fn check_seams(section: Loaded<'_>, params: &SynthesisParams, issues: &mut Vec<I
         Layout::Patches { .. } => vec![(2 * params.offset_count(), params.patch_path())],
         Layout::CornerTiles { colours, margin, .. } => {
             let tiles = params.offset_count() - u64::from(colours);
-            vec![
-                (2 * u64::from(colours).pow(2), params.colour_path(margin)),
-                (4 * tiles, params.middle_path(margin)),
-            ]
+            vec![(2 * u64::from(colours).pow(2), params.colour_path(margin)), (4 * tiles, params.middle_path(margin))]
         }
     };
     let mut path = 0u64;

@@ -5,8 +5,8 @@ use glint_formats::container::{ENTRY_BYTES, FourCc, HEADER_BYTES, Limits, full_m
 use glint_formats::dictionary::{self, DictionaryParams};
 use glint_formats::environment::{self, EnvironmentParams};
 use glint_formats::ndf_maps::*;
-use glint_formats::synthesis::{self, Layout, SynthesisParams};
 use glint_formats::provenance::{InputDigest, PROVENANCE, Provenance};
+use glint_formats::synthesis::{self, Layout, SynthesisParams};
 use glint_formats::{IssueCode, PackBuilder, Resource, Section, validate, vk_format};
 use xxhash_rust::xxh3::xxh3_64;
 

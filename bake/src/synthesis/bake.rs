@@ -90,7 +90,8 @@ fn quilt(
     let placed = choice.run(progress);
     let offsets: Vec<[u16; 2]> = placed.iter().map(|&c| candidates.offsets[c as usize]).collect();
     let params = params(features, options, Layout::Patches { width, height, columns, rows });
-    let grid = Grid { features, offsets: &offsets, columns, rows, patch: params.patch as i32, overlap: options.overlap };
+    let grid =
+        Grid { features, offsets: &offsets, columns, rows, patch: params.patch as i32, overlap: options.overlap };
     let shape = params.patch_path();
     let mut paths: Vec<[Vec<u32>; 2]> = Vec::with_capacity(offsets.len());
     let mut seams = Vec::with_capacity(params.seam_words() as usize);
@@ -132,7 +133,8 @@ impl Grid<'_> {
             let new = self.texel(at, x, y);
             distance(self.under(at, x, y, known), new)
         };
-        let left: Vec<u32> = rows.clone().flat_map(|y| (-overlap..0).map(move |x| (x, y))).map(|(x, y)| cost(x, y)).collect();
+        let left: Vec<u32> =
+            rows.clone().flat_map(|y| (-overlap..0).map(move |x| (x, y))).map(|(x, y)| cost(x, y)).collect();
         let upper: Vec<u32> = rows.flat_map(|x| (-overlap..0).map(move |y| (x, y))).map(|(x, y)| cost(x, y)).collect();
         [cut(&left, self.overlap as usize), cut(&upper, self.overlap as usize)]
     }

@@ -47,7 +47,8 @@ impl Candidates {
         }
         let offset = |at: u32| [columns[at as usize % columns.len()], rows[at as usize / columns.len()]];
         let offsets: Vec<[u16; 2]> = picked.into_iter().map(offset).collect();
-        let likeness = offsets.iter().flat_map(|&a| offsets.iter().map(move |&b| likeness(sample, options.patch, a, b)));
+        let likeness =
+            offsets.iter().flat_map(|&a| offsets.iter().map(move |&b| likeness(sample, options.patch, a, b)));
         Candidates { likeness: likeness.collect(), offsets }
     }
 

@@ -144,7 +144,8 @@ impl Choice<'_> {
         let span = |n: i64| if 2 * reach + 1 >= n { -(n / 2)..(n + 1) / 2 } else { -reach..reach + 1 };
         for dy in span(rows) {
             for dx in span(columns) {
-                let at = (i64::from(row) + dy).rem_euclid(rows) * columns + (i64::from(column) + dx).rem_euclid(columns);
+                let at =
+                    (i64::from(row) + dy).rem_euclid(rows) * columns + (i64::from(column) + dx).rem_euclid(columns);
                 let distance = dx.abs().max(dy.abs()) as u32;
                 let from = match distance {
                     d if d <= self.radii.alike => Likeness::Alike,

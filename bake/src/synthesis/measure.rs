@@ -86,7 +86,8 @@ pub fn whole_share(surface: &Synthesis, blocks: i32, log2_size: u32, exact: bool
         true => surface.source_block(bx, by, log2_size).is_some(),
         false => surface.block_source(bx * size, by * size, size, step).is_some(),
     };
-    let found = (0..blocks).flat_map(|by| (0..blocks).map(move |bx| (bx, by))).filter(|&(bx, by)| whole(bx, by)).count();
+    let found =
+        (0..blocks).flat_map(|by| (0..blocks).map(move |bx| (bx, by))).filter(|&(bx, by)| whole(bx, by)).count();
     found as f64 / f64::from(blocks).powi(2)
 }
 

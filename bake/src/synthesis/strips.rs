@@ -35,7 +35,13 @@ impl PairErrors {
         let below = [(long.clone(), far), (long, near)];
         let texels = (overlap * (patch + overlap)) as usize;
         let errors = |[older, newer]: [(Span, Span); 2]| {
-            errors(&strips(features, offsets, older), &strips(features, offsets, newer), offsets.len(), texels, progress)
+            errors(
+                &strips(features, offsets, older),
+                &strips(features, offsets, newer),
+                offsets.len(),
+                texels,
+                progress,
+            )
         };
         PairErrors { candidates: offsets.len(), beside: errors(beside), below: errors(below) }
     }

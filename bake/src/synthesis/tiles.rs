@@ -156,7 +156,10 @@ impl Frame<'_> {
     fn sides(&self) -> [Vec<(i32, i32)>; 4] {
         let (near, far) = (self.margin, self.edge - self.margin);
         let side = |at: &dyn Fn(i32, i32) -> (i32, i32)| {
-            (near..far).flat_map(|along| (0..self.overlap).map(move |depth| (along, depth))).map(|(a, d)| at(a, d)).collect()
+            (near..far)
+                .flat_map(|along| (0..self.overlap).map(move |depth| (along, depth)))
+                .map(|(a, d)| at(a, d))
+                .collect()
         };
         [
             side(&|along, depth| (near + depth, along)),
