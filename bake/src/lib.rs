@@ -13,3 +13,4 @@ mod pack_access;
 pub mod progress;
 pub mod quality;
 pub mod rng;
+pub mod synthesis;

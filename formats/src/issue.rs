@@ -106,6 +106,10 @@ issue_codes! {
     LobeCellEmpty = 3054, "cell without lobes";
     LobesNormalsShape = 3055, "lobe normals differ from parameters";
     LobesNormal = 3056, "lobe normal out of range";
+    SynthesisParameters = 3060, "synthesis parameter out of range";
+    SynthesisShape = 3061, "synthesis buffer differs from parameters";
+    SynthesisOffset = 3062, "synthesis patch outside sample";
+    SynthesisSeam = 3063, "synthesis seam path broken";
 }
 
 impl fmt::Display for IssueCode {

@@ -5,7 +5,7 @@ use crate::issue::{Issue, IssueCode};
 use crate::sections::Sections;
 use crate::{
     area_light, area_light_check, dictionary, dictionary_check, environment, environment_check, lobes, lobes_check,
-    ndf_maps, ndf_maps_check, placement_check, provenance,
+    ndf_maps, ndf_maps_check, placement_check, provenance, synthesis, synthesis_check,
 };
 
 /// A section kind this version reads.
@@ -46,6 +46,9 @@ pub const KNOWN: &[KnownKind] = &[
     KnownKind { kind: lobes::PARAMS, version: 1, title: "lobe parameters" },
     KnownKind { kind: lobes::LOBES, version: 1, title: "lobes" },
     KnownKind { kind: lobes::NORMALS, version: 1, title: "lobe normals" },
+    KnownKind { kind: synthesis::PARAMS, version: 1, title: "synthesis parameters" },
+    KnownKind { kind: synthesis::OFFSETS, version: 1, title: "synthesis patch offsets" },
+    KnownKind { kind: synthesis::SEAMS, version: 1, title: "synthesis seam paths" },
 ];
 
 /// A check of the contents of some kinds.
@@ -60,6 +63,7 @@ pub(crate) const CHECKS: &[Check] = &[
     environment_check::check,
     area_light_check::check,
     lobes_check::check,
+    synthesis_check::check,
 ];
 
 /// What this version knows of a kind.

@@ -26,6 +26,8 @@ pub mod params;
 mod placement_check;
 pub mod provenance;
 mod sections;
+pub mod synthesis;
+mod synthesis_check;
 mod verify;
 pub mod vk_format;
 

@@ -6,6 +6,7 @@ use glint_formats::dictionary::{self, DictionaryParams};
 use glint_formats::environment::{self, EnvironmentParams};
 use glint_formats::ndf_maps::*;
 use glint_formats::provenance::{InputDigest, PROVENANCE, Provenance};
+use glint_formats::synthesis::{self, Layout, SynthesisParams};
 use glint_formats::{IssueCode, PackBuilder, Resource, Section, validate, vk_format};
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -265,6 +266,52 @@ pub fn good_area_light() -> Vec<Section> {
     area_light_sections(&area_light_params(), &area_light_texels(), &ltc_table())
 }
 
+/// A surface of 2 × 1 patches of four texels, which overlap by two.
+pub fn synthesis_params() -> SynthesisParams {
+    SynthesisParams {
+        sample_width: 8,
+        sample_height: 6,
+        wrap: Wrap::Clamp,
+        patch: 4,
+        overlap: 2,
+        alignment: 2,
+        alpha: 0.9,
+        error_tolerance: 0.5,
+        seed: 7,
+        layout: Layout::Patches { width: 7, height: 4, columns: 2, rows: 1 },
+        measured: synthesis::MeasuredError { seam_ratio: 1.25, distinct_offsets: 2 },
+    }
+}
+
+/// Two tiles for four corners of the one colour.
+pub fn corner_tile_params() -> SynthesisParams {
+    let layout = Layout::CornerTiles { colours: 1, variants: 2, margin: 1, hash_seed: 3 };
+    SynthesisParams { sample_width: 12, sample_height: 12, patch: 10, overlap: 2, layout, ..synthesis_params() }
+}
+
+/// Offsets of [`synthesis_params`].
+pub fn synthesis_offsets() -> Vec<[u16; 2]> {
+    vec![[2, 2], [4, 2]]
+}
+
+/// Paths of [`synthesis_params`]: six entries of one bit in a word, left and upper of each patch.
+pub fn synthesis_seams() -> Vec<u32> {
+    vec![0b001100, 0b111111, 0, 0b100000]
+}
+
+/// The three sections of a synthesis.
+pub fn synthesis_sections(params: &SynthesisParams, offsets: &[[u16; 2]], seams: &[u32]) -> Vec<Section> {
+    vec![
+        Section::parameters(synthesis::PARAMS, "gold", params),
+        Section::buffer(synthesis::OFFSETS, "gold", offsets),
+        Section::buffer(synthesis::SEAMS, "gold", seams),
+    ]
+}
+
+pub fn good_synthesis() -> Vec<Section> {
+    synthesis_sections(&synthesis_params(), &synthesis_offsets(), &synthesis_seams())
+}
+
 /// A pack with every kind of section, one of them compressed.
 pub fn full_pack() -> Vec<u8> {
     let mut sections = vec![provenance_section()];
@@ -274,6 +321,7 @@ pub fn full_pack() -> Vec<u8> {
     sections.extend(dictionary_sections(&dictionary_params(), &dictionary_table()));
     sections.extend(environment_sections(&environment_params(), &environment_indicators(), 0x3c00));
     sections.extend(good_area_light());
+    sections.extend(good_synthesis());
     pack(sections)
 }
 
