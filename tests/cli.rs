@@ -16,6 +16,8 @@ mod documentation;
 mod environment;
 #[path = "cli/info.rs"]
 mod info;
+#[path = "cli/lobes.rs"]
+mod lobes;
 #[path = "cli/preview.rs"]
 mod preview;
 #[path = "cli/report.rs"]

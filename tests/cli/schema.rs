@@ -85,8 +85,10 @@ fn reports_keep_to_the_schema() {
     fs::write(folder.path().join("sky.hdr"), pixels.collect::<Vec<u8>>()).unwrap();
     bake(folder.path(), &["environment", "sky.hdr", "-o", "sky.glintpack", "--face-size", "4"]).ok();
     bake(folder.path(), &["area-light", "flakes.png", "-o", "light.glintpack", "--anisotropic"]).ok();
+    bake(folder.path(), &["lobes", "flakes.png", "-o", "hide.glintpack"]).ok();
     let mut files = vec![
         "light.glintpack".to_owned(),
+        "hide.glintpack".into(),
         "out.glintpack".into(),
         "lobes.glintpack".into(),
         "sky.glintpack".into(),

@@ -7,7 +7,7 @@ use super::gaussian::Gaussian4;
 use super::merge::{self, MergeSettings};
 use super::options::{LobesOptions, NormalsChoice, ROUNDING};
 use super::quality::{self, Measured};
-use super::quantise::{self, Lobe};
+use super::quantise::{self, Lobe, Scales};
 use super::query::QuerySettings;
 use super::reference::Reference;
 use super::seeds;
@@ -46,14 +46,13 @@ impl BakedLobes {
         self.lobes.len() + self.normals.len()
     }
 
-    /// A lobe by its index among all, which must be one of `level`.
-    pub fn lobe(&self, level: usize, index: u32) -> Lobe {
+    /// A lobe by its index among all; `scales` are those of its level.
+    pub fn lobe(&self, index: u32, scales: &Scales) -> Lobe {
         let stride = self.params.storage.stride() as usize;
         let bytes = &self.lobes[index as usize * stride..][..stride];
-        let level = &self.params.levels[level];
         match self.params.storage {
-            LobeStorage::Packed => quantise::decode_packed(&bytemuck::pod_read_unaligned(bytes), &self.params, level),
-            LobeStorage::Half => quantise::decode_half(&bytemuck::pod_read_unaligned(bytes), &self.params, level),
+            LobeStorage::Packed => quantise::decode_packed(&bytemuck::pod_read_unaligned(bytes), &self.params, scales),
+            LobeStorage::Half => quantise::decode_half(&bytemuck::pod_read_unaligned(bytes), &self.params, scales),
         }
     }
 
@@ -106,61 +105,86 @@ pub fn bake(map: &NormalMap, options: &LobesOptions, progress: &dyn Progress) ->
     Ok(baked)
 }
 
-/// Levels of cells from `SEED_CELL` or finer on, doubling, up to one cell.
+/// Levels of cells of doubling edge, up to one cell.
 fn grids(map: &NormalMap, options: &LobesOptions) -> Vec<LobeLevel> {
-    let mut cell = options.cell_texels.min(if options.seeds == 4 { SEED_CELL / 2 } else { SEED_CELL });
+    let mut cell = options.cell_texels;
     let mut grids = Vec::new();
     loop {
-        let (cells_x, cells_y) = (map.width.div_ceil(cell), map.height.div_ceil(cell));
-        grids.push(LobeLevel {
-            cell_texels: cell,
-            cells_x,
-            cells_y,
-            first_lobe: 0,
-            weight_scale: 1.0,
-            position_sigma: [1.0; 2],
-            residual_sigma: [0.0; 2],
-            jacobian_scale: 0.0,
-        });
-        if cell >= options.cell_texels && cells_x * cells_y == 1 {
+        grids.push(grid(map, cell));
+        let LobeLevel { cells_x, cells_y, .. } = grids[grids.len() - 1];
+        if cells_x * cells_y == 1 {
             return grids;
         }
         cell *= 2;
     }
 }
 
+/// A level's grid, without lobes yet.
+fn grid(map: &NormalMap, cell_texels: u32) -> LobeLevel {
+    LobeLevel {
+        cell_texels,
+        cells_x: map.width.div_ceil(cell_texels),
+        cells_y: map.height.div_ceil(cell_texels),
+        first_lobe: 0,
+        weight_scale: 1.0,
+        position_sigma: [1.0; 2],
+        residual_sigma: [1.0; 2],
+        jacobian_scale: 0.0,
+    }
+}
+
 fn build_levels(map: &NormalMap, options: &LobesOptions, baked: &mut BakedLobes, progress: &dyn Progress) {
     let grids = grids(map, options);
     let count = |grid: &LobeLevel| grid.cells_x as usize * grid.cells_y as usize;
-    progress.begin("lobes", grids.iter().map(|grid| count(grid) as u64).sum());
+    // Cells of the first level hold finer ones that are not kept, so that they cost several times as much.
+    let steps = |at: usize| if at == 0 { 4 } else { 1 };
+    progress.begin("lobes", grids.iter().enumerate().map(|(at, grid)| steps(at) * count(grid) as u64).sum());
     let mut finer: Option<(LobeLevel, Vec<Vec<Gaussian4>>)> = None;
     for (at, grid) in grids.iter().enumerate() {
-        let settings = MergeSettings {
-            merge: options.merge,
-            lobes: options.lobes_per_cell as usize,
-            blur: [BLUR_OF_CELL * grid.cell_texels as f64, options.roughness],
-        };
         let cells: Vec<Vec<Gaussian4>> = (0..count(grid))
             .into_par_iter()
             .map(|cell| {
                 let (x, y) = (cell as u32 % grid.cells_x, cell as u32 / grid.cells_x);
                 let parts = match &finer {
-                    None => cell_seeds(map, options, grid, x, y),
+                    None => finest_parts(map, options, grid, x, y),
                     Some((below, cells)) => children(below, cells, x, y),
                 };
-                const PURPOSE: u32 = 7;
-                let mut rng = ItemRng::new(options.seed, PURPOSE + ((at as u32) << 8), cell as u32);
-                let lobes = merge::reduce(&parts, &settings, &mut rng);
-                progress.advance(1);
+                let lobes = reduce(options, grid, x, y, &parts);
+                progress.advance(steps(at));
                 lobes
             })
             .collect();
-        if grid.cell_texels >= options.cell_texels {
-            store(grid, &cells, baked);
-        }
+        store(grid, &cells, baked);
         finer = Some((*grid, cells));
     }
     progress.end();
+}
+
+fn reduce(options: &LobesOptions, grid: &LobeLevel, x: u32, y: u32, parts: &[Gaussian4]) -> Vec<Gaussian4> {
+    const PURPOSE: u32 = 7;
+    let settings = MergeSettings {
+        merge: options.merge,
+        lobes: options.lobes_per_cell as usize,
+        blur: [BLUR_OF_CELL * grid.cell_texels as f64, options.roughness],
+    };
+    let mut rng = ItemRng::new(options.seed, PURPOSE + (grid.cell_texels << 8), y * grid.cells_x + x);
+    merge::reduce(parts, &settings, &mut rng)
+}
+
+/// What a cell of the first level is reduced from: seeds, or cells of half its edge that are not kept.
+fn finest_parts(map: &NormalMap, options: &LobesOptions, cell: &LobeLevel, x: u32, y: u32) -> Vec<Gaussian4> {
+    let seed_cell = if options.seeds == 4 { SEED_CELL / 2 } else { SEED_CELL };
+    if cell.cell_texels <= seed_cell {
+        return cell_seeds(map, options, cell, x, y);
+    }
+    let below = grid(map, cell.cell_texels / 2);
+    let mut parts = Vec::new();
+    for j in 2 * y..(2 * y + 2).min(below.cells_y) {
+        for i in 2 * x..(2 * x + 2).min(below.cells_x) {
+            parts.extend(reduce(options, &below, i, j, &finest_parts(map, options, &below, i, j)));
+        }
+    }
+    parts
 }
 
 fn cell_seeds(map: &NormalMap, options: &LobesOptions, grid: &LobeLevel, x: u32, y: u32) -> Vec<Gaussian4> {
@@ -184,9 +208,11 @@ fn children(below: &LobeLevel, cells: &[Vec<Gaussian4>], x: u32, y: u32) -> Vec<
 
 /// Appends a level's records.
 fn store(grid: &LobeLevel, cells: &[Vec<Gaussian4>], baked: &mut BakedLobes) {
-    let all: Vec<Gaussian4> = cells.iter().flatten().copied().collect();
     let stride = baked.params.storage.stride() as usize;
-    let level = LobeLevel { first_lobe: (baked.lobes.len() / stride) as u32, ..quantise::ranges(&all, *grid) };
+    let level = LobeLevel {
+        first_lobe: (baked.lobes.len() / stride) as u32,
+        ..quantise::ranges(cells.iter().flatten(), *grid)
+    };
     for (cell, lobes) in cells.iter().enumerate() {
         let at = DVec2::new((cell as u32 % grid.cells_x) as f64, (cell as u32 / grid.cells_x) as f64);
         let corner = at * grid.cell_texels as f64;

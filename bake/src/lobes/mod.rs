@@ -15,6 +15,7 @@ pub mod quality;
 pub mod quantise;
 pub mod query;
 pub mod reference;
+pub mod reference_lobes;
 mod runnalls;
 pub mod sections;
 pub mod seeds;

@@ -29,7 +29,7 @@ pub fn default_cell(width: u32, height: u32) -> u32 {
 }
 
 /// Rounding of 8-bit normals that is let pass, over σ_r, root mean square.
-pub const ROUNDING: f64 = 0.06;
+pub const ROUNDING: f64 = 0.03;
 
 /// Options of one map's bake.
 #[derive(Clone, Debug, PartialEq)]

@@ -33,8 +33,36 @@ pub fn nominal_extent(params: &LobesParams, level: &LobeLevel) -> Vec2 {
     Vec2::new(level.cell_texels.min(params.width) as f32, level.cell_texels.min(params.height) as f32)
 }
 
+/// A level's ranges, with what every lobe would compute of them anew.
+#[derive(Clone, Copy, Debug)]
+pub struct Scales {
+    level: LobeLevel,
+    extent: Vec2,
+    /// log₂ of largest over smallest deviation, of positions and of residuals.
+    log_ratio: [f32; 2],
+}
+
+impl Scales {
+    /// Scales of a level.
+    pub fn new(params: &LobesParams, level: &LobeLevel) -> Scales {
+        let log_ratio = [level.position_sigma, level.residual_sigma].map(|[low, high]| libm::log2f(high / low));
+        Scales { level: *level, extent: nominal_extent(params, level), log_ratio }
+    }
+
+    fn position_sigma(&self, code: u8) -> f32 {
+        self.level.position_sigma[0] * libm::exp2f(code as f32 / 255.0 * self.log_ratio[0])
+    }
+
+    fn residual_sigma(&self, code: u8) -> f32 {
+        match code {
+            0 => 0.0,
+            _ => self.level.residual_sigma[0] * libm::exp2f((code - 1) as f32 / 254.0 * self.log_ratio[1]),
+        }
+    }
+}
+
 /// Ranges of a level that its lobes are stored over. Cell indices and first lobe are the caller's.
-pub fn ranges(lobes: &[Gaussian4], level: LobeLevel) -> LobeLevel {
+pub fn ranges<'a>(lobes: impl Iterator<Item = &'a Gaussian4>, level: LobeLevel) -> LobeLevel {
     let (mut weight, mut jacobian, mut residual) = (0.0f64, 0.0f64, 0.0f64);
     let (mut low, mut high) = (f64::INFINITY, 0.0f64);
     for lobe in lobes {
@@ -97,7 +125,7 @@ fn packed(lobe: &Gaussian4, corner: DVec2, params: &LobesParams, level: &LobeLev
         let q = (v.abs() / (level.jacobian_scale as f64).max(f64::MIN_POSITIVE)).sqrt().copysign(v);
         (q * 127.0).round().clamp(-127.0, 127.0) as i8
     });
-    let residual = Ellipse::of(rest(lobe, &decode_packed(&record, params, level)));
+    let residual = Ellipse::of(rest(lobe, &decode_packed(&record, params, &Scales::new(params, level))));
     record.residual_sigma = residual.sigmas.map(|sigma| {
         if sigma < 0.7 * level.residual_sigma[0] as f64 || sigma <= 0.0 {
             0
@@ -124,7 +152,7 @@ fn half(lobe: &Gaussian4, corner: DVec2, params: &LobesParams, level: &LobeLevel
         weight: float(lobe.weight / level.weight_scale as f64),
         ..HalfLobe::default()
     };
-    let residual = Ellipse::of(rest(lobe, &decode_half(&record, params, level)));
+    let residual = Ellipse::of(rest(lobe, &decode_half(&record, params, &Scales::new(params, level))));
     record.residual_sigma = residual.sigmas.map(float);
     record.correlation[1] = correlation(residual.correlation);
     record
@@ -175,11 +203,6 @@ fn log_place(sigma: f64, [low, high]: [f32; 2]) -> f64 {
     if ratio > 0.0 { libm::log(sigma / low as f64) / ratio } else { 0.0 }
 }
 
-/// σ at a place of a range.
-fn log_value(place: f32, [low, high]: [f32; 2]) -> f32 {
-    low * libm::exp2f(place * libm::log2f(high / low))
-}
-
 /// Factor F of a covariance F Fᵀ.
 fn factor(sigmas: [f32; 2], correlation: f32) -> Mat2 {
     let rest = (1.0 - correlation * correlation).sqrt();
@@ -187,7 +210,8 @@ fn factor(sigmas: [f32; 2], correlation: f32) -> Mat2 {
 }
 
 /// The lobe in a record.
-pub fn decode_packed(record: &PackedLobe, params: &LobesParams, level: &LobeLevel) -> Lobe {
+pub fn decode_packed(record: &PackedLobe, params: &LobesParams, scales: &Scales) -> Lobe {
+    let level = &scales.level;
     let word = record.normal_weight;
     let normal = Vec2::new((word & 0xfff) as f32, (word >> 12 & 0xfff) as f32) / 4095.0;
     let root = (word >> 24) as f32 / 255.0;
@@ -196,31 +220,26 @@ pub fn decode_packed(record: &PackedLobe, params: &LobesParams, level: &LobeLeve
         let q = c as f32 / 127.0;
         level.jacobian_scale * q * q.abs()
     });
-    let residual = record
-        .residual_sigma
-        .map(|c| if c == 0 { 0.0 } else { log_value((c - 1) as f32 / 254.0, level.residual_sigma) });
+    let residual = record.residual_sigma.map(|code| scales.residual_sigma(code));
     let position = Vec2::new(record.position[0] as f32, record.position[1] as f32) / 255.0;
     Lobe {
         weight: level.weight_scale * root * root,
-        position: position * nominal_extent(params, level),
+        position: position * scales.extent,
         normal: Vec2::from(params.normal_low) + normal * Vec2::from(params.normal_extent),
-        spread: factor(
-            record.position_sigma.map(|c| log_value(c as f32 / 255.0, level.position_sigma)),
-            correlation[0],
-        ),
+        spread: factor(record.position_sigma.map(|code| scales.position_sigma(code)), correlation[0]),
         jacobian: Mat2::from_cols_array(&jacobian),
         residual: factor(residual, correlation[1]),
     }
 }
 
 /// The lobe in a record.
-pub fn decode_half(record: &HalfLobe, params: &LobesParams, level: &LobeLevel) -> Lobe {
+pub fn decode_half(record: &HalfLobe, params: &LobesParams, scales: &Scales) -> Lobe {
     let float = |bits: u16| f16::from_bits(bits).to_f32();
     let unorm = |v: [u16; 2]| Vec2::new(v[0] as f32, v[1] as f32) / 65535.0;
     let correlation = record.correlation.map(|c| c as f32 / 32767.0 * MAX_CORRELATION);
     Lobe {
-        weight: level.weight_scale * float(record.weight),
-        position: unorm(record.position) * nominal_extent(params, level),
+        weight: scales.level.weight_scale * float(record.weight),
+        position: unorm(record.position) * scales.extent,
         normal: Vec2::from(params.normal_low) + unorm(record.normal) * Vec2::from(params.normal_extent),
         spread: factor(record.position_sigma.map(float), correlation[0]),
         jacobian: Mat2::from_cols_array(&record.jacobian.map(float)),

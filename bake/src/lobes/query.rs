@@ -4,12 +4,14 @@
 //! map seen alike. The level follows from the footprint's minor axis, λ = 1 + log₂(σ / σ₁) with σ₁ = `cell_sigmas` cells
 //! of the finest stored level, raised where a long footprint would visit too many cells. Boxes give way to stored cells
 //! sooner, since their number grows with the footprint's area. Two levels are interpolated as
-//! Eq. 9 means it: the finer has weight ⌈λ⌉ − λ (as printed, the weights belong to the wrong levels).
+//! Eq. 9 means it, the finer by the weight that falls with λ (as printed, the weights belong to the wrong levels), but stored
+//! levels only over the second half of the way between them.
 //!
 //! A cell is visited where it lies: [`Query::add_cell`] takes its address in the map and how far it was moved from there.
 
 use super::bake::BakedLobes;
 use super::eval::{self, Frame, SeenLobe};
+use super::quantise::Scales;
 use super::span::{Slot, slots, span_x};
 use crate::footprint::Footprint;
 use glam::{DVec2, Mat2, Vec2};
@@ -19,7 +21,7 @@ use glint_formats::ndf_maps::Wrap;
 /// Choice between speed and accuracy at run time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuerySettings {
-    /// Footprint's minor deviation, over the edge of a level's cells, at which that level alone is read.
+    /// Footprint's minor deviation, over the edge of a level's cells, from which on the level is read, alone at first.
     pub cell_sigmas: f32,
     /// Footprint's minor deviation, over the edge of the finest cells, up to which boxes alone are read.
     pub boxes_until: f32,
@@ -38,11 +40,11 @@ pub struct QuerySettings {
 impl Default for QuerySettings {
     fn default() -> QuerySettings {
         QuerySettings {
-            cell_sigmas: 0.5,
+            cell_sigmas: 0.6,
             boxes_until: 0.25,
             cells_from: 0.375,
             box_sigmas: 0.25,
-            max_cells: 48.0,
+            max_cells: 32.0,
             max_boxes: 1024.0,
             reach: 3.0,
         }
@@ -67,7 +69,7 @@ pub struct Lod {
     pub finer: Detail,
     /// The coarser level.
     pub coarser: Detail,
-    /// λ − ⌊λ⌋: weight of the coarser; the finer has the rest.
+    /// Weight of the coarser; the finer has the rest.
     pub fraction: f32,
 }
 
@@ -92,8 +94,9 @@ impl<'a, V: FnMut(&SeenLobe)> Query<'a, V> {
         let corner = Vec2::new(cell[0] as f32, cell[1] as f32) * grid.cell_texels as f32 + displacement;
         let per_cell = self.lobes.params.lobes_per_cell;
         let first = grid.first_lobe + (cell[1] * grid.cells_x + cell[0]) * per_cell;
+        let scales = Scales::new(&self.lobes.params, grid);
         for index in first..first + per_cell {
-            let lobe = self.lobes.lobe(level, index);
+            let lobe = self.lobes.lobe(index, &scales);
             if lobe.weight > 0.0 {
                 let seen = eval::seen(&lobe, self.frame.mean - corner - lobe.position, &self.frame, self.roughness);
                 (self.visit)(&seen);
@@ -111,10 +114,10 @@ impl<'a, V: FnMut(&SeenLobe)> Query<'a, V> {
 
     /// Adds the lobes of the last level, every place alike.
     pub fn add_whole(&mut self) {
-        let level = self.lobes.params.levels.len() - 1;
-        let first = self.lobes.params.levels[level].first_lobe;
-        for index in first..first + self.lobes.params.lobes_per_cell {
-            let lobe = self.lobes.lobe(level, index);
+        let top = &self.lobes.params.levels[self.lobes.params.levels.len() - 1];
+        let scales = Scales::new(&self.lobes.params, top);
+        for index in top.first_lobe..top.first_lobe + self.lobes.params.lobes_per_cell {
+            let lobe = self.lobes.lobe(index, &scales);
             if lobe.weight > 0.0 {
                 (self.visit)(&eval::seen_whole(&lobe, self.roughness));
             }
@@ -190,7 +193,10 @@ impl BakedLobes {
             _ if level <= levels => Detail::Cells(level - 1),
             _ => Detail::Whole,
         };
-        Lod { finer: detail(finer), coarser: detail(finer + 1), fraction: lambda - finer as f32 }
+        let fraction = lambda - finer as f32;
+        // The finer of two stored levels serves alone for half the way: nearer to the map, and only one level is read.
+        let fraction = if finer == 0 { fraction } else { (2.0 * fraction - 1.0).max(0.0) };
+        Lod { finer: detail(finer), coarser: detail(finer + 1), fraction }
     }
 
     /// Edge of the boxes that a footprint is resolved in: a power of two, at most a texel.
