@@ -226,7 +226,8 @@ fn few_candidates_are_a_seeded_choice() {
 #[test]
 fn options_without_a_meaning_are_named() {
     let map = noise(64, 64, Wrap::Repeat);
-    let edits: [(fn(&mut SynthesisOptions), &str); 12] = [
+    type Edit = fn(&mut SynthesisOptions);
+    let edits: [(Edit, &str); 12] = [
         (|o| o.patch = 3, "--patch"),
         (|o| o.patch = 2048, "--patch"),
         (|o| o.overlap = 9, "--overlap"),

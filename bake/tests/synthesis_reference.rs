@@ -193,7 +193,7 @@ fn corner_tiles_are_the_pasted_window() {
         let surface = baked(&map, &SynthesisOptions { overlap, patch: 40, ..options(target) });
         let Layout::CornerTiles { hash_seed, .. } = surface.params.layout else { panic!() };
         let hashed = |i: i64, j: i64, draw: u32, n: u32| {
-            (draw_bits(cell_state(i as u32, j as u32, hash_seed), draw) >> 16) * n >> 16
+            ((draw_bits(cell_state(i as u32, j as u32, hash_seed), draw) >> 16) * n) >> 16
         };
         for first in [(0, 0), (-3, -2), (50_000_000, -50_000_000)] {
             let corner = |i, j| hashed(i, j, 0, colours);

@@ -55,7 +55,7 @@ fn check_parameters(params: &SynthesisParams) -> Result<(), String> {
         let (width, height) = (params.sample_width, params.sample_height);
         return Err(format!("expected a sample of {needed} texels a side at least, found {width} × {height}"));
     }
-    if params.alignment == 0 || params.patch % params.alignment != 0 {
+    if params.alignment == 0 || !params.patch.is_multiple_of(params.alignment) {
         let (patch, found) = (params.patch, params.alignment);
         return Err(format!("expected an alignment that divides the patch of {patch}, found {found}"));
     }
@@ -86,7 +86,7 @@ fn check_layout(params: &SynthesisParams) -> Result<(), String> {
             in_range("corner colours", (1, MAX_COLOURS), colours)?;
             in_range("variants", (1, MAX_VARIANTS), variants)?;
             let half = params.patch / 2;
-            if params.patch % 2 == 1 {
+            if !params.patch.is_multiple_of(2) {
                 return Err(format!("expected tiles of an even edge, found {}", params.patch));
             }
             if margin == 0 || u64::from(margin) + 2 * u64::from(params.overlap) > u64::from(half) {
@@ -114,7 +114,7 @@ fn check_offsets(section: Loaded<'_>, params: &SynthesisParams, issues: &mut Vec
                 Wrap::Repeat => (0, side - 1),
                 Wrap::Clamp => (params.overlap, side - params.patch),
             };
-            (first..=last).contains(&found) && found % params.alignment == 0
+            (first..=last).contains(&found) && found.is_multiple_of(params.alignment)
         });
         if !sound {
             let message = format!(

@@ -22,14 +22,19 @@ pub(super) const PURPOSE: u32 = 51;
 /// How much larger than the least error, relatively, an error is that counts as equal to it.
 const SLACK: f64 = 0.1;
 
-/// Picks a candidate: of those whose error is within `tolerance`, or next to the least there is, the least used; of these
-/// one by chance. Barred ones are left out unless all are.
-pub(super) fn pick(errors: &[f64], barred: &[bool], used: &[u32], tolerance: f64, rng: &mut ItemRng) -> usize {
+/// Picks a candidate: of those whose error is `limit` at most, which one is at least, the least used; of these one by
+/// chance. Barred ones are left out unless all are.
+pub(super) fn pick(
+    errors: &[f64],
+    barred: &[bool],
+    used: &[u32],
+    limit: impl Fn(&[f64]) -> f64,
+    rng: &mut ItemRng,
+) -> usize {
     let any = barred.contains(&false);
-    let allowed = |&c: &usize| !any || !barred[c];
-    let least = (0..errors.len()).filter(allowed).map(|c| errors[c]).fold(f64::INFINITY, f64::min);
-    let limit = tolerance.max(least * (1.0 + SLACK));
-    let good: Vec<usize> = (0..errors.len()).filter(allowed).filter(|&c| errors[c] <= limit).collect();
+    let allowed: Vec<usize> = (0..errors.len()).filter(|&c| !any || !barred[c]).collect();
+    let limit = limit(&allowed.iter().map(|&c| errors[c]).collect::<Vec<f64>>());
+    let good: Vec<usize> = allowed.into_iter().filter(|&c| errors[c] <= limit).collect();
     let fewest = good.iter().map(|&c| used[c]).min().unwrap_or(0);
     let best: Vec<usize> = good.into_iter().filter(|&c| used[c] == fewest).collect();
     best[rng.below(best.len() as u32) as usize]
@@ -97,7 +102,9 @@ impl Choice<'_> {
         let (errors, overlaps) = self.sums(column, row, placed);
         let barred = self.barred(column, row, placed);
         let mut rng = ItemRng::new(self.seed, PURPOSE, at);
-        pick(&errors, &barred, used, self.tolerance * overlaps, &mut rng)
+        let tolerance = self.tolerance * overlaps;
+        let least = |errors: &[f64]| errors.iter().copied().fold(f64::INFINITY, f64::min);
+        pick(&errors, &barred, used, |errors| tolerance.max(least(errors) * (1.0 + SLACK)), &mut rng)
     }
 
     /// Sum over the overlaps with placed neighbours of every candidate's mean error, in units, and how many overlaps those

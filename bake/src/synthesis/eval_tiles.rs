@@ -15,7 +15,7 @@ pub(super) struct Tiles {
 
 /// Uniform in 0 … n − 1 (n ≤ 65536) from random bits.
 fn below(bits: u32, n: u32) -> u32 {
-    (bits >> 16) * n >> 16
+    ((bits >> 16) * n) >> 16
 }
 
 /// Colour of the corner (i, j) of the lattice of tiles.

@@ -129,7 +129,7 @@ impl SynthesisOptions {
         in_range("corner colours", (1, MAX_COLOURS), colours)?;
         in_range("variants", (1, MAX_VARIANTS), variants)?;
         let needed = 2 * (self.margin() + 2 * self.overlap);
-        if self.patch % 2 == 1 || self.patch < needed {
+        if !self.patch.is_multiple_of(2) || self.patch < needed {
             let (overlap, found) = (self.overlap, self.patch);
             return bad(format!(
                 "--patch: corner tiles with an overlap of {overlap} need an even edge of {needed} or more, found {found}"

@@ -92,7 +92,7 @@ pub fn offsets(sample: &NormalMap, options: &SynthesisOptions) -> Vec<[u16; 2]> 
                     && y >= options.overlap
                     && x + options.patch <= sample.width
                     && y + options.patch <= sample.height);
-            if inside && x % options.alignment == 0 && y % options.alignment == 0 {
+            if inside && x.is_multiple_of(options.alignment) && y.is_multiple_of(options.alignment) {
                 all.push([x as u16, y as u16]);
             }
         }

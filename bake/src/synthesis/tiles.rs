@@ -10,7 +10,7 @@
 //!   edge. It hides the place where four corner patches meet.
 
 use super::bake::{Synthesis, params};
-use super::candidates::Candidates;
+use super::candidates::{Candidates, Likeness};
 use super::choose::pick;
 use super::features::{COUNT, Feature, Features, distance};
 use super::options::SynthesisOptions;
@@ -25,6 +25,10 @@ use rayon::prelude::*;
 const PURPOSE: u32 = 52;
 /// Purpose of the random numbers that choose corner patches.
 const PURPOSE_CORNERS: u32 = 53;
+/// A middle patch is one of the best 1 / [`BEST_OF`] of the candidates: the best alone would be the same few everywhere.
+const BEST_OF: usize = 8;
+/// A middle patch that has been seen once, before it is divided among those that resemble it.
+const ONCE: u32 = 1 << 16;
 /// Sets of corner patches among which one is chosen.
 const DRAWS: u32 = 32;
 
@@ -219,8 +223,8 @@ impl Base<'_> {
         texels.into_iter().flat_map(|(x, y)| self.texel(colours, x, y)).collect()
     }
 
-    /// The middle patch of every tile. Of the candidates within tolerance the least used, then by the seed; where there is
-    /// none, the best. Not the corner patches, nor twice much the same under the same four colours.
+    /// The middle patch of every tile. Of the candidates within tolerance, or of the best, the one least seen so far, then
+    /// by the seed. Not the corner patches, nor twice much the same under the same four colours.
     fn middle_patches(
         &self,
         tiles: usize,
@@ -240,6 +244,9 @@ impl Base<'_> {
             let side = |k: usize| sum_of_squares(&of[k * side..][..side], &ring[k * side..][..side]) as f64;
             (side(0) + side(2)) / frame.units[0] + (side(1) + side(3)) / frame.units[1]
         };
+        let resembling: Vec<u32> = (0..count)
+            .map(|c| frame.candidates.likeness(c).iter().filter(|&&l| l == Likeness::NearlyEqual).count() as u32)
+            .collect();
         let mut used = vec![0u32; count];
         let mut picked: Vec<usize> = Vec::with_capacity(tiles);
         for tile in 0..tiles / variants {
@@ -253,8 +260,19 @@ impl Base<'_> {
                     .map(|c| corners.iter().chain(siblings).any(|&other| frame.candidates.alike(c, other)))
                     .collect();
                 let mut rng = ItemRng::new(options.seed, PURPOSE, picked.len() as u32);
-                let chosen = pick(&errors, &barred, &used, tolerance, &mut rng);
-                used[chosen] += 1;
+                let limit = |errors: &[f64]| {
+                    let mut sorted = errors.to_vec();
+                    sorted.sort_by(f64::total_cmp);
+                    tolerance.max(sorted[(sorted.len() - 1) / BEST_OF])
+                };
+                let chosen = pick(&errors, &barred, &used, limit, &mut rng);
+                // What shows nearly the same has been seen as well. Shares are by how many do, or candidates at the rim of
+                // the sample, which fewer resemble, would be preferred.
+                for (c, &likeness) in frame.candidates.likeness(chosen).iter().enumerate() {
+                    if likeness == Likeness::NearlyEqual {
+                        used[c] += ONCE / resembling[c];
+                    }
+                }
                 picked.push(chosen);
                 progress.advance(1);
             }
