@@ -13,4 +13,5 @@ mod pack_access;
 pub mod progress;
 pub mod quality;
 pub mod rng;
+pub mod surface;
 pub mod synthesis;

@@ -110,6 +110,7 @@ issue_codes! {
     SynthesisShape = 3061, "synthesis buffer differs from parameters";
     SynthesisOffset = 3062, "synthesis patch outside sample";
     SynthesisSeam = 3063, "synthesis seam path broken";
+    SurfaceMismatch = 3064, "lobes and synthesis of a surface do not fit";
 }
 
 impl fmt::Display for IssueCode {

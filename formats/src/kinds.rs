@@ -5,7 +5,7 @@ use crate::issue::{Issue, IssueCode};
 use crate::sections::Sections;
 use crate::{
     area_light, area_light_check, dictionary, dictionary_check, environment, environment_check, lobes, lobes_check,
-    ndf_maps, ndf_maps_check, placement_check, provenance, synthesis, synthesis_check,
+    ndf_maps, ndf_maps_check, placement_check, provenance, surface_check, synthesis, synthesis_check,
 };
 
 /// A section kind this version reads.
@@ -64,6 +64,7 @@ pub(crate) const CHECKS: &[Check] = &[
     area_light_check::check,
     lobes_check::check,
     synthesis_check::check,
+    surface_check::check,
 ];
 
 /// What this version knows of a kind.

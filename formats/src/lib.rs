@@ -26,6 +26,7 @@ pub mod params;
 mod placement_check;
 pub mod provenance;
 mod sections;
+mod surface_check;
 pub mod synthesis;
 mod synthesis_check;
 mod verify;

@@ -97,9 +97,9 @@ pub enum Merge {
 pub struct LobeLevel {
     /// Edge of a cell in texels; cells at the right and lower edge may be cut.
     pub cell_texels: u32,
-    /// Columns of cells: ⌈width / cell_texels⌉.
+    /// Columns of cells, see [`LobesParams::grid`].
     pub cells_x: u32,
-    /// Rows of cells: ⌈height / cell_texels⌉.
+    /// Rows of cells.
     pub cells_y: u32,
     /// Index of the level's first lobe.
     pub first_lobe: u32,
@@ -147,6 +147,10 @@ pub struct LobesParams {
     pub seeds: u32,
     /// Lobes a cell.
     pub lobes_per_cell: u32,
+    /// 0: a map's own lobes; cells of a level lie side by side. Else the map is the sample of a surface of patches (section
+    /// [`crate::synthesis::PARAMS`] of the same name): cells larger than this begin at all its multiples, so that whole
+    /// blocks of patches are cells; the last level is the whole surface in one cell, every place alike.
+    pub step_texels: u32,
     /// Smallest projected normal of a lobe: what a stored 0 stands for.
     pub normal_low: [f32; 2],
     /// Range of projected normals of lobes.
@@ -155,6 +159,25 @@ pub struct LobesParams {
     pub levels: Vec<LobeLevel>,
     /// Error as the bake measured it, a row a footprint size.
     pub measured: Vec<FootprintError>,
+}
+
+impl LobesParams {
+    /// Texels from one cell of `cell_texels` to the next.
+    pub fn step(&self, cell_texels: u32) -> u32 {
+        if self.step_texels == 0 { cell_texels } else { cell_texels.min(self.step_texels) }
+    }
+
+    /// Columns and rows of cells of `cell_texels`, of levels over the map. Side by side: those that cover it. In steps: all
+    /// that lie in a clamped map, which must hold one; those of a repeated one go on across its edge.
+    pub fn grid(&self, cell_texels: u32) -> (u32, u32) {
+        let step = self.step(cell_texels);
+        let count = |side: u32| match self.wrap {
+            _ if self.step_texels == 0 => side.div_ceil(cell_texels),
+            Wrap::Repeat => side / step,
+            Wrap::Clamp => side.checked_sub(cell_texels).map_or(0, |rest| rest / step + 1),
+        };
+        (count(self.width), count(self.height))
+    }
 }
 
 /// A lobe in 16 bytes. Bytes and words are little-endian; `level` is the lobe's [`LobeLevel`].

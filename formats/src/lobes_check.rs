@@ -6,6 +6,7 @@ use crate::lobes::{
     HalfLobe, LOBES, LobeLevel, LobeStorage, LobesParams, MAX_LOBES_PER_CELL, MAX_SIGMA_RATIO, MAX_TEXTURE_SIZE,
     NORMALS, NormalsStorage, PARAMS, PackedLobe,
 };
+use crate::ndf_maps::Wrap;
 use crate::sections::{Loaded, Sections};
 use half::f16;
 
@@ -71,6 +72,11 @@ fn check_parameters(params: &LobesParams) -> Result<(), String> {
             return Err(format!("expected normals between -1 and 1, found {low} and {extent} more"));
         }
     }
+    let step = params.step_texels;
+    let whole_steps = params.wrap == Wrap::Clamp || (params.width % step.max(1) == 0 && params.height % step.max(1) == 0);
+    if step != 0 && !(step.is_power_of_two() && whole_steps) {
+        return Err(format!("expected cells in steps of a power of two that a repeated map is a multiple of, found {step}"));
+    }
     for row in &params.measured {
         if !([row.sigma_texels, row.mean, row.worst].iter().all(|v| *v >= 0.0 && v.is_finite())) {
             return Err(format!("expected errors that are finite and not negative, found {row:?}"));
@@ -84,7 +90,9 @@ fn check_levels(params: &LobesParams) -> Result<u64, String> {
     let mut lobes = 0u64;
     let mut finer = None;
     for (i, level) in params.levels.iter().enumerate() {
-        check_level(params, level, lobes, finer).map_err(|why| format!("level {i}: {why}"))?;
+        let whole = params.step_texels != 0 && i > 0 && i + 1 == params.levels.len();
+        let grid = if whole { (1, 1) } else { params.grid(level.cell_texels) };
+        check_level(level, grid, lobes, finer).map_err(|why| format!("level {i}: {why}"))?;
         let cells = u64::from(level.cells_x) * u64::from(level.cells_y);
         lobes += cells * u64::from(params.lobes_per_cell);
         if lobes > u64::from(u32::MAX) {
@@ -101,14 +109,13 @@ fn check_levels(params: &LobesParams) -> Result<u64, String> {
     }
 }
 
-fn check_level(params: &LobesParams, level: &LobeLevel, first: u64, finer: Option<u32>) -> Result<(), String> {
+fn check_level(level: &LobeLevel, grid: (u32, u32), first: u64, finer: Option<u32>) -> Result<(), String> {
     let cell = level.cell_texels;
     let follows = finer.is_none_or(|finer| finer.checked_mul(2) == Some(cell));
     if !cell.is_power_of_two() || !follows || cell > 2 * MAX_TEXTURE_SIZE {
         return Err(format!("expected cells of a power of two, twice those of the level before, found {cell} texels"));
     }
-    let grid = (params.width.div_ceil(cell), params.height.div_ceil(cell));
-    if (level.cells_x, level.cells_y) != grid {
+    if (level.cells_x, level.cells_y) != grid || grid.0 == 0 || grid.1 == 0 {
         let found = (level.cells_x, level.cells_y);
         return Err(format!("expected {} × {} cells, found {} × {}", grid.0, grid.1, found.0, found.1));
     }

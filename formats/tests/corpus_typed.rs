@@ -23,6 +23,7 @@ pub fn cases() -> Vec<Case> {
     cases.extend(area_light_cases());
     cases.extend(lobes_cases());
     cases.extend(synthesis_cases());
+    cases.push(case(IssueCode::SurfaceMismatch, surface_with(|_, surface| surface.alignment = 2)));
     cases
 }
 
@@ -548,4 +549,40 @@ fn a_path_that_jumps_or_leaves_the_overlap_is_found() {
     assert_eq!(codes_of(0b01_10_01_00), []);
     assert_eq!(codes_of(0b11_10), [IssueCode::SynthesisSeam]);
     assert_eq!(codes_of(0b10_00), [IssueCode::SynthesisSeam]);
+}
+
+fn surface_with(edit: impl Fn(&mut LobesParams, &mut SynthesisParams)) -> Vec<u8> {
+    let (mut lobes, mut synthesis) = (surface_lobes_params(), surface_synthesis_params());
+    edit(&mut lobes, &mut synthesis);
+    pack(surface_sections(&lobes, &synthesis))
+}
+
+#[test]
+fn lobes_and_synthesis_that_do_not_fit_are_found() {
+    assert_eq!(codes(&surface_with(|_, _| ())), []);
+    let edits: [fn(&mut LobesParams, &mut SynthesisParams); 5] = [
+        |_, surface| surface.sample_width = 9,
+        |_, surface| surface.wrap = Wrap::Repeat,
+        |_, surface| surface.alignment = 2,
+        |_, surface| (surface.patch, surface.alignment) = (8, 8),
+        |lobes, _| lobes.wrap = Wrap::Repeat,
+    ];
+    for edit in edits {
+        let found = codes(&surface_with(edit));
+        assert!(found.contains(&IssueCode::SurfaceMismatch), "{found:?}");
+    }
+    // Cells of four texels cannot be told from the surface as a whole, and of cells in steps there must be one.
+    let levels: [fn(&mut LobesParams, &mut SynthesisParams); 3] = [
+        |lobes, _| lobes.levels[0].cells_x = 1,
+        |lobes, _| lobes.levels[1].cells_x = 2,
+        |lobes, _| lobes.levels[1].cell_texels = 4,
+    ];
+    for edit in levels {
+        assert_eq!(codes(&surface_with(edit)), [IssueCode::LobesLevels]);
+    }
+    assert_eq!(codes(&surface_with(|lobes, _| lobes.step_texels = 3)), [IssueCode::LobesParameters]);
+    let alone = without(surface_sections(&surface_lobes_params(), &surface_synthesis_params()), synthesis::PARAMS);
+    assert!(codes(&pack(alone)).contains(&IssueCode::MissingSection));
+    let one = LobesParams { levels: vec![surface_lobes_params().levels[1]], ..surface_lobes_params() };
+    assert!(!codes(&pack(surface_sections(&one, &surface_synthesis_params()))).is_empty());
 }

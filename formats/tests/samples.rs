@@ -290,6 +290,7 @@ pub fn lobes_params(storage: LobeStorage) -> LobesParams {
         merge: lobes::Merge::Runnalls,
         seeds: 4,
         lobes_per_cell: 2,
+        step_texels: 0,
         normal_low: [-0.5, -0.25],
         normal_extent: [0.75, 0.5],
         levels: vec![level, LobeLevel { cell_texels: 8, cells_x: 1, first_lobe: 4, ..level }],
@@ -393,6 +394,40 @@ pub fn synthesis_sections(params: &SynthesisParams, offsets: &[[u16; 2]], seams:
 
 pub fn good_synthesis() -> Vec<Section> {
     synthesis_sections(&synthesis_params(), &synthesis_offsets(), &synthesis_seams())
+}
+
+/// Lobes of the sample of a surface: 2 × 2 cells of 4 texels and the whole, a lobe each.
+pub fn surface_lobes_params() -> LobesParams {
+    let mut params = LobesParams {
+        width: 8,
+        height: 8,
+        wrap: Wrap::Clamp,
+        step_texels: 4,
+        lobes_per_cell: 1,
+        ..lobes_params(LobeStorage::Packed)
+    };
+    params.levels[0].cells_y = 2;
+    params
+}
+
+/// The synthesis that goes with [`surface_lobes_params`].
+pub fn surface_synthesis_params() -> SynthesisParams {
+    SynthesisParams { sample_height: 8, alignment: 4, ..synthesis_params() }
+}
+
+/// The six sections of a surface.
+pub fn surface_sections(lobes: &LobesParams, synthesis: &SynthesisParams) -> Vec<Section> {
+    let format = vk_format::R8G8_UNORM;
+    let texture =
+        Resource::Texture { vk_format: format, width: lobes.width, height: lobes.height, layers: 1, faces: 1, mips: 1 };
+    let normals = vec![128; (lobes.width * lobes.height * 2) as usize];
+    let mut sections = vec![
+        Section::parameters(lobes::PARAMS, "gold", lobes),
+        Section::buffer(lobes::LOBES, "gold", &[packed_lobes()[0]; 5]),
+        Section::texture(lobes::NORMALS, "gold", texture, normals),
+    ];
+    sections.extend(synthesis_sections(synthesis, &[[4, 4]; 2], &synthesis_seams()));
+    sections
 }
 
 /// A pack with every kind of section, one of them compressed.

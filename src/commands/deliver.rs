@@ -87,6 +87,9 @@ fn summary(report: &Report, outcome: WriteOutcome) -> String {
     for map in &report.lobes {
         lines.push(format!("{}: {}", map.name, map.accuracy_line()));
     }
+    for surface in &report.surfaces {
+        lines.push(format!("{}: {}", surface.name, surface.accuracy_line()));
+    }
     let outcome = match outcome {
         WriteOutcome::Written => "written",
         WriteOutcome::Unchanged => "unchanged",

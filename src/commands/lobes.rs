@@ -2,6 +2,7 @@
 
 use super::deliver::Delivery;
 use super::ndf_maps::{ChannelsArg, NormalY, WrapArg, digest, unique_name};
+use super::surface::SurfaceFlags;
 use crate::cli::{RunFlags, Terminal, values};
 use crate::exit::{Exit, Failure};
 use crate::info::kib;
@@ -10,14 +11,20 @@ use crate::pack;
 use crate::progress::Stages;
 use clap::ValueEnum;
 use glint_bake_core::lobes::options::{LobesOptions, NormalsChoice, default_cell};
-use glint_bake_core::lobes::{self, BakedLobes, sections};
+use glint_bake_core::lobes::{self, sections};
+use glint_bake_core::surface::{self, Surface};
+use glint_bake_core::synthesis::SynthesisOptions;
 use glint_formats::Codec;
-use glint_formats::lobes::{Filter, LobeStorage, Merge};
+use glint_formats::Section;
+use glint_formats::lobes::{Filter, FootprintError, LobeStorage, Merge};
 use glint_formats::provenance::{InputDigest, Provenance};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What makes a pack smaller.
 const SMALLER: &str = "give a larger --cell, fewer lobes with --k, or a part of the map with --crop";
+
+/// Edge of a surface's finest cells in texels.
+const SURFACE_CELL: u32 = 8;
 
 /// Bake a normal map as MIP-mapped position-normal lobes
 ///
@@ -37,6 +44,8 @@ pub struct Args {
 
     #[command(flatten)]
     pub reduction: Reduction,
+    #[command(flatten)]
+    pub surface: SurfaceFlags,
     /// Compress the pack's sections with Zstandard
     #[arg(long, help_heading = "Bake")]
     pub compress: bool,
@@ -75,7 +84,8 @@ pub struct Reduction {
     /// Lobes a cell, 1 to 256
     #[arg(long, value_name = "LOBES", default_value = "32")]
     pub k: u32,
-    /// Edge of the finest cells in texels: 4, 8, 16, 32 or 64 [default: 8, for maps above 512 x 512 texels 16]
+    /// Edge of the finest cells in texels: 4, 8, 16, 32 or 64 [default: 8, for maps above 512 x 512 texels 16]; 16 at
+    /// most with --synthesize, where it is 8
     #[arg(long, value_name = "TEXELS")]
     pub cell: Option<u32>,
     /// How the lobes of a cell are reduced
@@ -96,7 +106,7 @@ pub struct Reduction {
     /// Error E1 asked of every footprint size that the bake measures, on average; missing it fails the bake
     #[arg(long, value_name = "E1", value_parser = values::positive)]
     pub max_error: Option<f64>,
-    /// Seed of random numbers; only k-means draws any
+    /// Seed of random numbers, for k-means and for the choice of patches
     #[arg(long, value_name = "SEED", default_value = "1")]
     pub seed: u64,
 }
@@ -142,19 +152,33 @@ pub fn run(args: Args, terminal: Terminal) -> Result<(), Failure> {
 
 fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     args.reduction.options(1, 1).validate()?;
+    let synthesis = args.surface.options(args.reduction.seed)?;
+    if let Some(synthesis) = &synthesis {
+        synthesis.validate()?;
+    }
     let name = args.name()?;
     let inputs = [args.map.clone()];
     let delivery = Delivery { output: &args.output, inputs: &inputs, run: &args.run };
     delivery.check()?;
+    args.check_normal_map()?;
     let loaded = load_normal_map(&args.map, &args.input_options())?;
     let digest = digest(&args.map, &loaded)?;
     for warning in &loaded.warnings {
         terminal.warn(&format!("{}: {warning}", args.map.display()));
     }
     let (width, height) = (loaded.map.width, loaded.map.height);
-    let options = args.reduction.options(width, height);
-    options.check(&loaded.map).map_err(|e| Failure::bake(&args.map, &e))?;
-    let bytes = options.most_bytes(width, height);
+    let mut options = args.reduction.options(width, height);
+    let bytes = match &synthesis {
+        None => {
+            options.check(&loaded.map).map_err(|e| Failure::bake(&args.map, &e))?;
+            options.most_bytes(width, height)
+        }
+        Some(synthesis) => {
+            options.cell_texels = args.reduction.cell.unwrap_or(SURFACE_CELL);
+            surface::bake::check(&loaded.map, &options, synthesis).map_err(|e| Failure::bake(&args.map, &e))?;
+            surface::bake::most_bytes(width, height, &options, synthesis)
+        }
+    };
     delivery.check_size(bytes, SMALLER)?;
     let line = format!(
         "{width} × {height} texels, {} lobes a cell of {} texels, {} at most",
@@ -168,11 +192,8 @@ fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         return Ok(());
     }
     terminal.detail(&format!("{}: {line}, {}", args.map.display(), loaded.convention));
-    let baked = lobes::bake(&loaded.map, &options, &Stages::new(terminal)).map_err(|e| Failure::bake(&args.map, &e))?;
-    args.check_error(&baked)?;
-    let codec = if args.compress { Codec::Zstd } else { Codec::None };
-    let sections = sections::to_sections(&name, &baked, codec);
-    let bytes = pack::seal(&args.provenance(&options, &loaded, digest), sections)?;
+    let sections = args.sections(&name, &loaded, &options, synthesis.as_ref(), terminal)?;
+    let bytes = pack::seal(&args.provenance(&options, synthesis.as_ref(), &loaded, digest), sections)?;
     delivery.write(bytes, SMALLER, terminal)
 }
 
@@ -229,10 +250,40 @@ impl Args {
         }
     }
 
+    /// Says whether the surface's normal map can be written beside the other outputs.
+    fn check_normal_map(&self) -> Result<(), Failure> {
+        let outputs = [Some(&self.output), self.run.report.as_ref(), self.run.depfile.as_ref()];
+        let outputs: Vec<&Path> = outputs.into_iter().flatten().map(PathBuf::as_path).collect();
+        self.surface.check_writable(&outputs, &[&self.map])
+    }
+
+    /// Bakes the map, or the surface that is made of it. The surface's normal map is written on the way.
+    fn sections(
+        &self,
+        name: &str,
+        loaded: &LoadedMap,
+        options: &LobesOptions,
+        synthesis: Option<&SynthesisOptions>,
+        terminal: Terminal,
+    ) -> Result<Vec<Section>, Failure> {
+        let codec = if self.compress { Codec::Zstd } else { Codec::None };
+        let (map, progress) = (&loaded.map, Stages::new(terminal));
+        let Some(synthesis) = synthesis else {
+            let baked = lobes::bake(map, options, &progress).map_err(|e| Failure::bake(&self.map, &e))?;
+            self.check_error(&baked.params.measured)?;
+            return Ok(sections::to_sections(name, &baked, codec));
+        };
+        let baked: Surface =
+            surface::bake(map, options, synthesis, &progress).map_err(|e| Failure::bake(&self.map, &e))?;
+        self.check_error(&baked.lobes.params.measured)?;
+        self.surface.write_normal_map(&baked, map)?;
+        Ok(surface::sections::to_sections(name, &baked, codec))
+    }
+
     /// When the user named an error, missing it at any size is a failure.
-    fn check_error(&self, baked: &BakedLobes) -> Result<(), Failure> {
+    fn check_error(&self, measured: &[FootprintError]) -> Result<(), Failure> {
         let Some(asked) = self.reduction.max_error else { return Ok(()) };
-        let Some(missed) = baked.params.measured.iter().find(|row| f64::from(row.mean) > asked) else { return Ok(()) };
+        let Some(missed) = measured.iter().find(|row| f64::from(row.mean) > asked) else { return Ok(()) };
         let message = format!(
             "{}: expected E1 of {asked} on average at every footprint size, found {:.5} at {} texels; nothing was written. \
              Raise --max-error, --k or --roughness, or give --storage f16",
@@ -244,7 +295,13 @@ impl Args {
     }
 
     /// Where the pack comes from. Flags that do not change its bytes are left out.
-    fn provenance(&self, used: &LobesOptions, loaded: &LoadedMap, digest: InputDigest) -> Provenance {
+    fn provenance(
+        &self,
+        used: &LobesOptions,
+        synthesis: Option<&SynthesisOptions>,
+        loaded: &LoadedMap,
+        digest: InputDigest,
+    ) -> Provenance {
         let debug = |value: &dyn std::fmt::Debug| format!("{value:?}").to_ascii_lowercase();
         let of = &self.reduction;
         let mut options = vec![
@@ -260,6 +317,9 @@ impl Args {
             ("wrap", debug(&self.wrap)),
             ("channels", debug(&self.channels)),
         ];
+        if let Some(synthesis) = synthesis {
+            options.extend(self.surface.provenance(synthesis));
+        }
         if let Some(error) = of.max_error {
             options.push(("max-error", error.to_string()));
         }

@@ -10,6 +10,7 @@ mod lobes;
 mod ndf_maps;
 mod preview;
 mod report;
+mod surface;
 
 use crate::cli::{Common, LONG_VERSION, Terminal};
 use crate::exit::{Failure, HELP};

@@ -1,7 +1,7 @@
 //! One map's MIP-mapped lobes, as numbers.
 
 use super::text::{kib, percent};
-use glint_bake_core::lobes::sections;
+use glint_bake_core::lobes::{BakedLobes, sections};
 use glint_formats::Pack;
 use glint_formats::lobes::{Filter, FootprintError, LobeStorage, Merge, NormalsStorage};
 use glint_formats::ndf_maps::Wrap;
@@ -52,7 +52,11 @@ impl LobesInfo {
     }
 
     fn of(pack: &Pack, name: &str) -> Option<LobesInfo> {
-        let baked = sections::from_pack(pack, name).ok()?;
+        LobesInfo::describe(name, &sections::from_pack(pack, name).ok()?)
+    }
+
+    /// Describes lobes of either kind.
+    pub(super) fn describe(name: &str, baked: &BakedLobes) -> Option<LobesInfo> {
         let params = &baked.params;
         Some(LobesInfo {
             name: name.to_owned(),

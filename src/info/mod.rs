@@ -6,6 +6,7 @@ mod environment;
 mod lobes;
 mod material;
 pub mod plot;
+mod surface;
 mod text;
 
 pub use area_light::AreaLightInfo;
@@ -13,6 +14,7 @@ pub use dictionary::DictionaryInfo;
 pub use environment::EnvironmentInfo;
 pub use lobes::LobesInfo;
 pub use material::MaterialInfo;
+pub use surface::SurfaceInfo;
 pub use text::{kib, percent};
 
 use crate::exit::Exit;
@@ -56,6 +58,8 @@ pub struct Report {
     pub area_lights: Vec<AreaLightInfo>,
     /// MIP-mapped lobes.
     pub lobes: Vec<LobesInfo>,
+    /// Surfaces of patches with the lobes of their samples.
+    pub surfaces: Vec<SurfaceInfo>,
     /// Where the pack comes from.
     pub provenance: Vec<Provenance>,
     #[serde(skip)]
@@ -99,6 +103,7 @@ impl Report {
             environments: Vec::new(),
             area_lights: Vec::new(),
             lobes: Vec::new(),
+            surfaces: Vec::new(),
             provenance: Vec::new(),
             pack: None,
         }
@@ -120,6 +125,7 @@ impl Report {
             report.environments = EnvironmentInfo::all_of(&pack);
             report.area_lights = AreaLightInfo::all_of(&pack);
             report.lobes = LobesInfo::all_of(&pack);
+            report.surfaces = SurfaceInfo::all_of(&pack);
             report.provenance = decode_all(&pack, PROVENANCE);
         }
         report.pack = Some(pack);

@@ -78,6 +78,10 @@ impl Report {
             line(&mut out, String::new());
             out.push_str(&map.to_text());
         }
+        for surface in &self.surfaces {
+            line(&mut out, String::new());
+            out.push_str(&surface.to_text());
+        }
         for provenance in &self.provenance {
             line(&mut out, String::new());
             provenance_lines(provenance, &mut out);

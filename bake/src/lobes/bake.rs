@@ -27,7 +27,7 @@ const SEED_CELL: u32 = 8;
 /// Footprint that cells of an edge are read with, over that edge: differences of position below it do not show.
 const BLUR_OF_CELL: f64 = 0.4;
 /// Sizes of footprints that the bake measures its error over, in texels, as far as the map goes.
-const MEASURED_SIGMAS: [f64; 5] = [2.0, 4.0, 8.0, 16.0, 32.0];
+pub(crate) const MEASURED_SIGMAS: [f64; 5] = [2.0, 4.0, 8.0, 16.0, 32.0];
 
 /// MIP-mapped lobes of one map, ready for a pack.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,9 +78,17 @@ impl BakedLobes {
 /// Bakes one map. Errors: an option out of range, or a map that is too large.
 pub fn bake(map: &NormalMap, options: &LobesOptions, progress: &dyn Progress) -> Result<BakedLobes> {
     options.check(map)?;
+    let mut baked = without_levels(map, options);
+    build_levels(map, options, &mut baked, progress);
+    measure(map, options, &mut baked, progress);
+    Ok(baked)
+}
+
+/// A map's normals and parameters; lobes are to follow.
+pub(crate) fn without_levels(map: &NormalMap, options: &LobesOptions) -> BakedLobes {
     let (storage, normals) = store_normals(map, options);
     let [low, high] = normal_range(map);
-    let mut baked = BakedLobes {
+    BakedLobes {
         params: LobesParams {
             width: map.width,
             height: map.height,
@@ -92,6 +100,7 @@ pub fn bake(map: &NormalMap, options: &LobesOptions, progress: &dyn Progress) ->
             merge: options.merge,
             seeds: options.seeds,
             lobes_per_cell: options.lobes_per_cell,
+            step_texels: 0,
             normal_low: low.to_array(),
             normal_extent: (high - low).to_array(),
             levels: Vec::new(),
@@ -99,10 +108,7 @@ pub fn bake(map: &NormalMap, options: &LobesOptions, progress: &dyn Progress) ->
         },
         lobes: Vec::new(),
         normals,
-    };
-    build_levels(map, options, &mut baked, progress);
-    measure(map, options, &mut baked, progress);
-    Ok(baked)
+    }
 }
 
 /// Levels of cells of doubling edge, up to one cell.
@@ -120,7 +126,7 @@ fn grids(map: &NormalMap, options: &LobesOptions) -> Vec<LobeLevel> {
 }
 
 /// A level's grid, without lobes yet.
-fn grid(map: &NormalMap, cell_texels: u32) -> LobeLevel {
+pub(crate) fn grid(map: &NormalMap, cell_texels: u32) -> LobeLevel {
     LobeLevel {
         cell_texels,
         cells_x: map.width.div_ceil(cell_texels),
@@ -160,7 +166,7 @@ fn build_levels(map: &NormalMap, options: &LobesOptions, baked: &mut BakedLobes,
     progress.end();
 }
 
-fn reduce(options: &LobesOptions, grid: &LobeLevel, x: u32, y: u32, parts: &[Gaussian4]) -> Vec<Gaussian4> {
+pub(crate) fn reduce(options: &LobesOptions, grid: &LobeLevel, x: u32, y: u32, parts: &[Gaussian4]) -> Vec<Gaussian4> {
     const PURPOSE: u32 = 7;
     let settings = MergeSettings {
         merge: options.merge,
@@ -172,7 +178,7 @@ fn reduce(options: &LobesOptions, grid: &LobeLevel, x: u32, y: u32, parts: &[Gau
 }
 
 /// What a cell of the first level is reduced from: seeds, or cells of half its edge that are not kept.
-fn finest_parts(map: &NormalMap, options: &LobesOptions, cell: &LobeLevel, x: u32, y: u32) -> Vec<Gaussian4> {
+pub(crate) fn finest_parts(map: &NormalMap, options: &LobesOptions, cell: &LobeLevel, x: u32, y: u32) -> Vec<Gaussian4> {
     let seed_cell = if options.seeds == 4 { SEED_CELL / 2 } else { SEED_CELL };
     if cell.cell_texels <= seed_cell {
         return cell_seeds(map, options, cell, x, y);
@@ -207,7 +213,7 @@ fn children(below: &LobeLevel, cells: &[Vec<Gaussian4>], x: u32, y: u32) -> Vec<
 }
 
 /// Appends a level's records.
-fn store(grid: &LobeLevel, cells: &[Vec<Gaussian4>], baked: &mut BakedLobes) {
+pub(crate) fn store(grid: &LobeLevel, cells: &[Vec<Gaussian4>], baked: &mut BakedLobes) {
     let stride = baked.params.storage.stride() as usize;
     let level = LobeLevel {
         first_lobe: (baked.lobes.len() / stride) as u32,
@@ -215,7 +221,7 @@ fn store(grid: &LobeLevel, cells: &[Vec<Gaussian4>], baked: &mut BakedLobes) {
     };
     for (cell, lobes) in cells.iter().enumerate() {
         let at = DVec2::new((cell as u32 % grid.cells_x) as f64, (cell as u32 / grid.cells_x) as f64);
-        let corner = at * grid.cell_texels as f64;
+        let corner = at * baked.params.step(grid.cell_texels) as f64;
         for k in 0..baked.params.lobes_per_cell as usize {
             quantise::encode(lobes.get(k), corner, &baked.params, &level, &mut baked.lobes);
         }

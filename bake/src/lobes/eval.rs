@@ -126,15 +126,29 @@ fn inside_disk(mean: Vec2, [xx, xy, yy]: [f32; 3]) -> f32 {
     (0.5 * libm::erfcf(-to_rim / (2.0 * variance).sqrt())).max(1e-3)
 }
 
-/// Lobe of a box of the filtered map: exact moments, see [`super::seeds`].
-pub fn box_lobe(normal: Vec2, jacobian: Mat2, twist: Vec2, edge: f32) -> Lobe {
+/// Lobe of a box of the filtered map, `size` texels wide and high: exact moments, see [`super::seeds`].
+pub fn box_lobe(normal: Vec2, jacobian: Mat2, twist: Vec2, size: Vec2) -> Lobe {
     const PER_EDGE: f32 = 0.288_675_13; // 1 / √12
     Lobe {
-        weight: edge * edge,
+        weight: size.x * size.y,
         position: Vec2::ZERO,
         normal,
-        spread: Mat2::from_diagonal(Vec2::splat(edge * PER_EDGE)),
+        spread: Mat2::from_diagonal(size * PER_EDGE),
         jacobian,
-        residual: Mat2::from_cols(twist * (edge * edge / 12.0), Vec2::ZERO),
+        residual: Mat2::from_cols(twist * (size.x * size.y / 12.0), Vec2::ZERO),
+    }
+}
+
+/// A quarter of a lobe, whose spread has the columns f and g: the one beside it along `signs` (±1) of both. Four quarters
+/// have the lobe's moments, as the quarters of a box have.
+pub fn quarter(lobe: &Lobe, signs: Vec2) -> Lobe {
+    const APART: f32 = 0.866_025_4; // √3 / 2
+    let d = lobe.spread * (signs * APART);
+    Lobe {
+        weight: 0.25 * lobe.weight,
+        position: lobe.position + d,
+        normal: lobe.normal + lobe.jacobian * d,
+        spread: lobe.spread * 0.5,
+        ..*lobe
     }
 }

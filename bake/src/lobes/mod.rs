@@ -19,7 +19,7 @@ pub mod reference_lobes;
 mod runnalls;
 pub mod sections;
 pub mod seeds;
-mod span;
+pub(crate) mod span;
 
 pub use bake::{BakedLobes, bake};
 pub use options::LobesOptions;

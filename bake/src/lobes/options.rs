@@ -103,8 +103,13 @@ impl LobesOptions {
             }
             cell *= 2;
         }
-        let texel = if self.normals == NormalsChoice::Unorm8 { 2 } else { 4 };
-        cells * self.lobes_per_cell as u64 * self.storage.stride() as u64 + width as u64 * height as u64 * texel
+        let texels = width as u64 * height as u64 * self.most_texel_bytes();
+        cells * self.lobes_per_cell as u64 * self.storage.stride() as u64 + texels
+    }
+
+    /// Bytes of a texel's normal, at most.
+    pub(crate) fn most_texel_bytes(&self) -> u64 {
+        if self.normals == NormalsChoice::Unorm8 { 2 } else { 4 }
     }
 
     /// Whether the options make sense.

@@ -107,7 +107,7 @@ impl<'a, V: FnMut(&SeenLobe)> Query<'a, V> {
     /// Adds the box of `edge` texels around `centre` in the map, moved by `displacement`.
     pub fn add_box(&mut self, centre: Vec2, edge: f32, displacement: Vec2) {
         let (normal, jacobian, twist) = self.lobes.surface_at(centre);
-        let lobe = eval::box_lobe(normal, jacobian, twist, edge);
+        let lobe = eval::box_lobe(normal, jacobian, twist, Vec2::splat(edge));
         let seen = eval::seen(&lobe, self.frame.mean - centre - displacement, &self.frame, self.roughness);
         (self.visit)(&seen);
     }
@@ -202,7 +202,8 @@ impl BakedLobes {
     /// Edge of the boxes that a footprint is resolved in: a power of two, at most a texel.
     fn box_edge(&self, frame: &Frame, settings: &QuerySettings) -> f32 {
         // The seam of a clamped map cuts through whole-texel boxes.
-        let clamped = self.params.wrap == Wrap::Clamp && self.params.filter == Filter::Linear;
+        let own_map = self.params.step_texels == 0;
+        let clamped = own_map && self.params.wrap == Wrap::Clamp && self.params.filter == Filter::Linear;
         let mut edge = if clamped { 0.5 } else { 1.0 };
         let (a, b) = (settings.reach * frame.major, settings.reach * frame.minor);
         while edge > settings.box_sigmas * frame.minor && edge > 2.0 * eval::LEAST_SIGMA {
@@ -300,25 +301,29 @@ impl BakedLobes {
 
     /// Projected normal, Jacobian ∂s/∂u and twist ∂²s/∂u∂v at a place in the map.
     fn surface_at(&self, u: Vec2) -> (Vec2, Mat2, Vec2) {
-        if self.params.filter == Filter::Nearest {
-            return (self.texel(u.x.floor() as i32, u.y.floor() as i32), Mat2::ZERO, Vec2::ZERO);
-        }
-        let p = u - 0.5;
-        let cell = p.floor();
-        let f = p - cell;
-        let (i, j) = (cell.x as i32, cell.y as i32);
-        let (s00, s10) = (self.texel(i, j), self.texel(i + 1, j));
-        let (s01, s11) = (self.texel(i, j + 1), self.texel(i + 1, j + 1));
-        let top = s00 + (s10 - s00) * f.x;
-        let bottom = s01 + (s11 - s01) * f.x;
-        let twist = s11 - s10 - s01 + s00;
-        let along = s10 - s00 + twist * f.y;
-        (top + (bottom - top) * f.y, Mat2::from_cols(along, bottom - top), twist)
+        bilinear(self.params.filter, u, |i, j| self.texel(i, j))
     }
 }
 
+/// Projected normal, Jacobian ∂s/∂u and twist ∂²s/∂u∂v of filtered texels at a place.
+pub(crate) fn bilinear(filter: Filter, u: Vec2, texel: impl Fn(i32, i32) -> Vec2) -> (Vec2, Mat2, Vec2) {
+    if filter == Filter::Nearest {
+        return (texel(u.x.floor() as i32, u.y.floor() as i32), Mat2::ZERO, Vec2::ZERO);
+    }
+    let p = u - 0.5;
+    let cell = p.floor();
+    let f = p - cell;
+    let (i, j) = (cell.x as i32, cell.y as i32);
+    let (s00, s10, s01, s11) = (texel(i, j), texel(i + 1, j), texel(i, j + 1), texel(i + 1, j + 1));
+    let top = s00 + (s10 - s00) * f.x;
+    let bottom = s01 + (s11 - s01) * f.x;
+    let twist = s11 - s10 - s01 + s00;
+    let along = s10 - s00 + twist * f.y;
+    (top + (bottom - top) * f.y, Mat2::from_cols(along, bottom - top), twist)
+}
+
 /// Sum of shares below which f32 cannot tell what a footprint sees.
-const LEAST_SHARE: f32 = 1e-30;
+pub(crate) const LEAST_SHARE: f32 = 1e-30;
 
 /// What a footprint sees.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -4,7 +4,7 @@ use super::eval::Frame;
 
 impl Frame {
     /// Half the height of the ellipse of `reach` standard deviations.
-    pub(super) fn reach_y(&self, reach: f32) -> f32 {
+    pub(crate) fn reach_y(&self, reach: f32) -> f32 {
         reach * self.variance_y().sqrt()
     }
 
@@ -14,7 +14,7 @@ impl Frame {
 }
 
 /// Range of x of the ellipse of `reach` standard deviations between the heights `from` and `to`.
-pub(super) fn span_x(frame: &Frame, reach: f32, from: f32, to: f32) -> Option<(f32, f32)> {
+pub(crate) fn span_x(frame: &Frame, reach: f32, from: f32, to: f32) -> Option<(f32, f32)> {
     let yy = frame.variance_y();
     let top = reach * yy.sqrt();
     let (from, to) = ((from - frame.mean.y).max(-top), (to - frame.mean.y).min(top));

@@ -176,6 +176,23 @@ impl SynthesisOptions {
         self.overlap.next_multiple_of(self.alignment)
     }
 
+    /// Bytes of offsets and seams, at most; exact for a grid of patches.
+    pub fn most_bytes(&self) -> u64 {
+        use glint_formats::synthesis::PathShape;
+        let words = |entries: u32| u64::from(PathShape::new(entries, self.overlap).words);
+        match self.target {
+            Target::Patches { width, height } => {
+                let patches = u64::from(width.div_ceil(self.patch)) * u64::from(height.div_ceil(self.patch));
+                patches * 4 * (1 + 2 * words(self.patch + self.overlap))
+            }
+            Target::Unbounded { colours, variants } => {
+                let tiles = u64::from(colours).pow(4) * u64::from(variants);
+                let pairs = u64::from(colours).pow(2) * 2 * words(2 * (self.margin() + self.overlap));
+                4 * (u64::from(colours) + tiles + pairs + tiles * 4 * words(self.patch))
+            }
+        }
+    }
+
     /// Bytes of the strips and the errors of every pair, at most.
     fn table_bytes(&self) -> u64 {
         let candidates = u64::from(self.max_candidates);
