@@ -33,7 +33,7 @@ pub struct SurfaceSettings {
     pub owned_from: u32,
     /// Largest range of normals in a box at a seam, over σ_r, that is not halved.
     pub box_range: f32,
-    /// Footprint's minor deviation, in texels, up to which boxes at seams are halved.
+    /// Footprint's minor deviation, in texels, up to which boxes at seams are halved along both axes.
     pub halves_until: f32,
 }
 
@@ -195,11 +195,10 @@ impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
     fn add_halved(&mut self, centre: Vec2, size: Vec2) {
         let (normal, jacobian, twist) = self.patch_at(centre);
         let most = self.settings.box_range * self.roughness;
-        let halves = |range: Vec2| {
-            let wide = self.view.frame.minor <= self.settings.halves_until && range.length_squared() > most * most;
-            if wide { 2 } else { 1 }
-        };
-        let (columns, rows) = (halves(jacobian.x_axis * size.x), halves(jacobian.y_axis * size.y));
+        let ranges = [jacobian.x_axis.length() * size.x, jacobian.y_axis.length() * size.y];
+        // Larger footprints see many boxes: there only the wider range is halved.
+        let least = if self.view.frame.minor <= self.settings.halves_until { 0.0 } else { ranges[0].max(ranges[1]) };
+        let [columns, rows] = ranges.map(|range| if range > most && range >= least { 2 } else { 1 });
         let part = size / Vec2::new(columns as f32, rows as f32);
         for j in 0..rows {
             for i in 0..columns {
