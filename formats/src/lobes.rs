@@ -157,6 +157,8 @@ pub struct LobesParams {
     pub normal_extent: [f32; 2],
     /// Levels, cells of doubling edge; the last has one cell.
     pub levels: Vec<LobeLevel>,
+    /// Roughness that the error was measured at: the intrinsic one, or larger where normals range too far to resolve it.
+    pub measured_roughness: f32,
     /// Error as the bake measured it, a row a footprint size.
     pub measured: Vec<FootprintError>,
 }

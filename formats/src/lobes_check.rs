@@ -66,6 +66,10 @@ fn check_parameters(params: &LobesParams) -> Result<(), String> {
             params.intrinsic_roughness
         ));
     }
+    if !(params.measured_roughness >= params.intrinsic_roughness && params.measured_roughness <= 1.0) {
+        let found = params.measured_roughness;
+        return Err(format!("expected an error measured at the intrinsic roughness or above, up to 1, found {found}"));
+    }
     for k in 0..2 {
         let (low, extent) = (params.normal_low[k], params.normal_extent[k]);
         if !(low >= -LONGEST && extent >= 0.0 && low + extent <= LONGEST) {

@@ -401,7 +401,8 @@ fn lobes_cases() -> Vec<Case> {
 fn every_way_lobes_can_be_wrong_is_found() {
     assert_eq!(codes(&lobes_with_params(|_| ())), [] as [IssueCode; 0]);
     assert_eq!(codes(&lobes_with_half(|_| ())), [] as [IssueCode; 0]);
-    let parameters: [fn(&mut LobesParams); 9] = [
+    let parameters: [fn(&mut LobesParams); 10] = [
+        |params| params.measured_roughness = 0.01,
         |params| params.width = 0,
         |params| params.height = 20_000,
         |params| params.lobes_per_cell = 257,

@@ -294,6 +294,7 @@ pub fn lobes_params(storage: LobeStorage) -> LobesParams {
         normal_low: [-0.5, -0.25],
         normal_extent: [0.75, 0.5],
         levels: vec![level, LobeLevel { cell_texels: 8, cells_x: 1, first_lobe: 4, ..level }],
+        measured_roughness: 0.02,
         measured: vec![lobes::FootprintError { sigma_texels: 2.0, mean: 0.01, worst: 0.02 }],
     }
 }

@@ -41,6 +41,8 @@ pub struct LobesInfo {
     pub lobe_bytes: u64,
     /// Bytes of the normals once decompressed.
     pub normal_bytes: u64,
+    /// Roughness that the error was measured at.
+    pub measured_roughness: f32,
     /// Error as the bake measured it, a row a footprint size.
     pub measured: Vec<FootprintError>,
 }
@@ -90,6 +92,7 @@ impl LobesInfo {
             },
             lobe_bytes: baked.lobes.len() as u64,
             normal_bytes: baked.normals.len() as u64,
+            measured_roughness: params.measured_roughness,
             measured: params.measured.clone(),
         })
     }
@@ -135,10 +138,11 @@ impl LobesInfo {
         for row in &self.measured {
             let _ = writeln!(
                 out,
-                "  error        E₁ {} on average, {} at the worst, footprints of {} texels",
+                "  error        E₁ {} on average, {} at the worst, footprints of {} texels, σ_r {}",
                 percent(f64::from(row.mean)),
                 percent(f64::from(row.worst)),
-                row.sigma_texels
+                row.sigma_texels,
+                self.measured_roughness
             );
         }
         out

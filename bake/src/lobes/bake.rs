@@ -29,6 +29,15 @@ const BLUR_OF_CELL: f64 = 0.4;
 /// Sizes of footprints that the bake measures its error over, in texels, as far as the map goes.
 pub(crate) const MEASURED_SIGMAS: [f64; 5] = [2.0, 4.0, 8.0, 16.0, 32.0];
 
+/// Sizes above this are measured over half the footprints.
+const LARGE_SIGMA: f64 = 4.0;
+/// Range of normals over the roughness that the error is measured at, at most: the exact NDF of a rougher map takes minutes.
+const MEASURED_RANGE: f64 = 100.0;
+
+/// Pieces of the reference that the bake measures against are this much coarser than they could be, which changes E₁ by less
+/// than half a point on steep maps.
+const MEASURED_REFINEMENT: f64 = 0.6;
+
 /// MIP-mapped lobes of one map, ready for a pack.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BakedLobes {
@@ -104,6 +113,7 @@ pub(crate) fn without_levels(map: &NormalMap, options: &LobesOptions) -> BakedLo
             normal_low: low.to_array(),
             normal_extent: (high - low).to_array(),
             levels: Vec::new(),
+            measured_roughness: options.roughness as f32,
             measured: Vec::new(),
         },
         lobes: Vec::new(),
@@ -262,12 +272,17 @@ fn measure(map: &NormalMap, options: &LobesOptions, baked: &mut BakedLobes, prog
     let extent = DVec2::new(map.width as f64, map.height as f64);
     let sizes = MEASURED_SIGMAS.iter().filter(|sigma| **sigma <= 0.25 * extent.max_element().max(8.0));
     progress.begin("error", sizes.clone().count() as u64);
-    let reference = Reference::new(map, options.filter, options.roughness);
+    let range = Vec2::from(baked.params.normal_extent).max_element() as f64;
+    let roughness = options.roughness.max(range / MEASURED_RANGE);
+    baked.params.measured_roughness = roughness as f32;
+    let reference = Reference::new(map, options.filter, roughness).refined(MEASURED_REFINEMENT);
     let mut rows = Vec::new();
     for &sigma in sizes {
-        let footprints = sweep::footprints(sigma, 1.0, extent, options.footprints, SEED);
+        // Large footprints differ less from place to place, and cost more.
+        let count = if sigma > LARGE_SIGMA { options.footprints.div_ceil(2) } else { options.footprints };
+        let footprints = sweep::footprints(sigma, 1.0, extent, count, SEED);
         let chosen = [(&*baked, Measured::Chosen(QuerySettings::default()))];
-        let errors = quality::footprint_errors(&reference, &chosen, &footprints, 2 * quality::STRIDE);
+        let errors = quality::footprint_errors(&reference, &chosen, &footprints, 3 * quality::STRIDE);
         rows.push(FootprintError {
             sigma_texels: sigma as f32,
             mean: errors[0].e1.mean as f32,

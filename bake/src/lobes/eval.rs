@@ -114,16 +114,33 @@ impl SeenLobe {
 /// Squared distance, in standard deviations, beyond which a lobe is nothing.
 const CUT: f32 = 30.0;
 
-/// Mass of a Gaussian on the disk's side of the rim next to its mean, as if the rim were straight.
+/// Mass of a Gaussian inside the disk: 1 unless it is wide or near the rim, else a sum over strips across the line from the
+/// disk's middle through its mean, each strip's chord by its conditional Gaussian.
 fn inside_disk(mean: Vec2, [xx, xy, yy]: [f32; 3]) -> f32 {
+    const STRIPS: i32 = 12;
     let radius = mean.length();
-    let outward = if radius > 0.0 { mean / radius } else { Vec2::X };
-    let variance = outward.x * outward.x * xx + 2.0 * outward.x * outward.y * xy + outward.y * outward.y * yy;
     let to_rim = 1.0 - radius;
-    if to_rim * to_rim > 25.0 * variance && to_rim > 0.0 {
+    if to_rim > 0.0 && to_rim * to_rim > 25.0 * (xx + yy) {
         return 1.0;
     }
-    (0.5 * libm::erfcf(-to_rim / (2.0 * variance).sqrt())).max(1e-3)
+    let out = if radius > 0.0 { mean / radius } else { Vec2::X };
+    let along = out.x * out.x * xx + 2.0 * out.x * out.y * xy + out.y * out.y * yy;
+    let cross = out.x * out.y * (yy - xx) + (out.x * out.x - out.y * out.y) * xy;
+    let rest = (out.y * out.y * xx - 2.0 * out.x * out.y * xy + out.x * out.x * yy - cross * cross / along).max(1e-12);
+    let low = (radius - 4.5 * along.sqrt()).max(-1.0);
+    let step = (1.0 - low) / STRIPS as f32;
+    let (across, beside) = (1.0 / (2.0 * along).sqrt(), 1.0 / (2.0 * rest).sqrt());
+    let mut sum = 0.0;
+    let mut below = libm::erff((low - radius) * across);
+    for k in 0..STRIPS {
+        let x = low + (k as f32 + 0.5) * step;
+        let above = libm::erff((x + 0.5 * step - radius) * across);
+        let chord = (1.0 - x * x).max(0.0).sqrt();
+        let middle = cross / along * (x - radius);
+        sum += (above - below) * (libm::erff((chord - middle) * beside) + libm::erff((chord + middle) * beside));
+        below = above;
+    }
+    (0.25 * sum).max(1e-3)
 }
 
 /// Lobe of a box of the filtered map, `size` texels wide and high: exact moments, see [`super::seeds`].

@@ -52,7 +52,7 @@ pub struct LobesOptions {
     pub normals: NormalsChoice,
     /// Seed of random numbers (k-means).
     pub seed: u64,
-    /// Footprints a size that the bake measures its error over; 0 measures nothing.
+    /// Footprints a size that the bake measures its error over, half as many above σ = 4 texels; 0 measures nothing.
     pub footprints: u32,
 }
 

@@ -79,7 +79,9 @@ pub fn difference(exact: &GridNdf, seen: &Gathered) -> (f64, f64) {
     let grid = &exact.grid;
     let mut found = vec![0.0f64; exact.values.len()];
     let mut off_grid = 0.0;
-    for lobe in &seen.lobes {
+    // A lobe of so small a share is nothing, and a query may hold as many of them as others.
+    let least = 1e-7 * seen.lobes.iter().fold(0.0, |most: f32, lobe| most.max(lobe.share));
+    for lobe in seen.lobes.iter().filter(|lobe| lobe.share > least) {
         // Half width and height of the lobe's ellipse at the distance where its density ends.
         let [a, b, c] = lobe.inverse.map(f64::from);
         let det = a * c - b * b;

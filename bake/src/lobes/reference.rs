@@ -17,12 +17,14 @@ use glint_formats::lobes::Filter;
 const REACH: f64 = 4.5;
 /// Bins a standard deviation of the intrinsic lobe.
 const BINS_PER_SIGMA: f64 = 6.0;
+
 /// A repeated map and what it is made of.
 pub struct Reference<'a> {
     map: &'a NormalMap,
     filter: Filter,
     roughness: f64,
     mass: DiskMass,
+    refinement: f64,
 }
 
 /// A density on a grid.
@@ -37,7 +39,12 @@ pub struct GridNdf {
 impl<'a> Reference<'a> {
     /// Reference for a map, filtered this way, of this intrinsic roughness σ_r.
     pub fn new(map: &'a NormalMap, filter: Filter, roughness: f64) -> Reference<'a> {
-        Reference { map, filter, roughness, mass: DiskMass::new(roughness) }
+        Reference { map, filter, roughness, mass: DiskMass::new(roughness), refinement: 1.0 }
+    }
+
+    /// The same with pieces `factor` times as short: above 1 to see that they are short enough, below 1 for speed.
+    pub fn refined(self, factor: f64) -> Reference<'a> {
+        Reference { refinement: factor, ..self }
     }
 
     /// Intrinsic roughness σ_r.
@@ -47,26 +54,27 @@ impl<'a> Reference<'a> {
 
     /// The P-NDF of a footprint on every `stride`-th bin.
     pub fn ndf(&self, footprint: &Footprint, stride: usize) -> GridNdf {
-        let samples = self.samples(footprint);
+        let (low, high) = self.normals_under(footprint);
         let reach = DVec2::splat(7.0 * self.roughness);
-        let low = samples.iter().fold(DVec2::INFINITY, |a, s| a.min(s.0)) - reach;
-        let high = samples.iter().fold(DVec2::NEG_INFINITY, |a, s| a.max(s.0)) + reach;
+        let (low, high) = (low - reach, high + reach);
         let bin = self.roughness / BINS_PER_SIGMA;
         let size = ((high - low) / bin).ceil();
         let (width, height) = (size.x as usize + 1, size.y as usize + 1);
         let mut bins = vec![0.0; width * height];
-        for (s, weight) in &samples {
-            let place = (*s - low) / bin - 0.5;
+        let mut total = 0.0;
+        self.for_each_sample(footprint, |s, weight| {
+            let place = (s - low) / bin - 0.5;
             let middle = place.round();
             let (x, y) = (spline(place.x - middle.x), spline(place.y - middle.y));
             let first = (middle.y as usize - 1) * width + middle.x as usize - 1;
+            total += weight;
             let weight = weight / self.mass.inside(s.length());
             for (row, wy) in y.into_iter().enumerate() {
                 for (column, wx) in x.into_iter().enumerate() {
                     bins[first + row * width + column] += weight * wx * wy;
                 }
             }
-        }
+        });
         let kernel = self.kernel(bin);
         let rows = blurred(&bins, width, height, stride, &kernel);
         let (columns, count) = (width.div_ceil(stride), height.div_ceil(stride));
@@ -77,25 +85,41 @@ impl<'a> Reference<'a> {
         for j in 0..count {
             for i in 0..columns {
                 let value = &mut values[j * columns + i];
-                *value = if grid.point(i, j).length_squared() > 1.0 { 0.0 } else { *value / (bin * bin) };
+                *value = if grid.point(i, j).length_squared() > 1.0 { 0.0 } else { *value / (bin * bin * total) };
             }
         }
         GridNdf { grid, values }
     }
 
-    /// Normals under the footprint and their shares, which sum to 1.
-    fn samples(&self, footprint: &Footprint) -> Vec<(DVec2, f64)> {
+    /// Bounds of the normals of the texels that the footprint's samples are filtered from.
+    fn normals_under(&self, footprint: &Footprint) -> (DVec2, DVec2) {
+        let (low, high) = quarters_under(footprint);
+        let texels = |from: f64, to: f64, size: u32| {
+            let (from, to) = ((from * 0.5).floor() as i64 - 1, (to * 0.5).ceil() as i64 + 1);
+            // A range as long as the map holds all of it.
+            from..=to.min(from + size as i64)
+        };
+        let mut bounds = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for j in texels(low.y, high.y, self.map.height) {
+            for i in texels(low.x, high.x, self.map.width) {
+                let at = |k: i64, size: u32| k.rem_euclid(size as i64);
+                let s = self.map.texel(at(i, self.map.width), at(j, self.map.height));
+                bounds = (bounds.0.min(s), bounds.1.max(s));
+            }
+        }
+        bounds
+    }
+
+    /// Calls `visit` with normals under the footprint and their weights.
+    fn for_each_sample(&self, footprint: &Footprint, mut visit: impl FnMut(DVec2, f64)) {
         let (minor, major, axis) = footprint.principal();
         let (minor, major) = (minor.max(1e-6), major.max(1e-6));
         let density = |u: DVec2| {
             let d = u - footprint.mean;
             libm::exp(-0.5 * ((d.dot(axis) / major).powi(2) + (axis.perp_dot(d) / minor).powi(2)))
         };
-        let extent = DVec2::new((axis.x * major).hypot(axis.y * minor), (axis.y * major).hypot(axis.x * minor)) * REACH;
-        let low = ((footprint.mean - extent) * 2.0).floor();
-        let high = ((footprint.mean + extent) * 2.0).floor();
+        let (low, high) = quarters_under(footprint);
         let size = DVec2::new(self.map.width as f64, self.map.height as f64);
-        let mut samples = Vec::new();
         if minor >= 4.0 {
             // The footprint hardly changes over a quarter texel: all copies of the map together weight its quarters.
             let (width, height) = (2 * self.map.width as usize, 2 * self.map.height as usize);
@@ -106,25 +130,22 @@ impl<'a> Reference<'a> {
                     shares[at] += density((DVec2::new(x as f64, y as f64) + 0.5) * 0.5);
                 }
             }
-            for (at, share) in shares.into_iter().enumerate().filter(|(_, share)| *share > 0.0) {
+            let most = shares.iter().fold(0.0, |a: f64, b| a.max(*b));
+            for (at, share) in shares.into_iter().enumerate().filter(|(_, share)| *share > 1e-7 * most) {
                 let corner = DVec2::new((at % width) as f64, (at / width) as f64) * 0.5;
-                self.for_each_piece(corner, f64::INFINITY, |u, part| samples.push((self.normal(u), share * part)));
+                self.for_each_piece(corner, f64::INFINITY, |u, part| visit(self.normal(u), share * part));
             }
         } else {
             for y in low.y as i64..=high.y as i64 {
                 for x in low.x as i64..=high.x as i64 {
                     let corner = DVec2::new(x as f64, y as f64) * 0.5;
                     let copy = (corner / size).floor() * size;
-                    self.for_each_piece(corner - copy, minor / 8.0, |u, part| {
-                        samples.push((self.normal(u), density(u + copy) * part));
+                    self.for_each_piece(corner - copy, minor / 12.0, |u, part| {
+                        visit(self.normal(u), density(u + copy) * part);
                     });
                 }
             }
         }
-        let total: f64 = samples.iter().map(|s| s.1).sum();
-        samples.iter_mut().for_each(|s| s.1 /= total);
-        samples.retain(|s| s.1 > 0.0);
-        samples
     }
 
     /// Midpoints of the pieces of the quarter texel at `corner`, at most `longest` long, and their part of its area.
@@ -136,8 +157,9 @@ impl<'a> Reference<'a> {
             if self.filter == Filter::Nearest { 0.0 } else { corners.into_iter().map(length).fold(0.0, f64::max) }
         };
         let pieces = |axis: usize| {
-            let by_normal = QUARTER * steepest(axis) / (0.5 * self.roughness);
-            by_normal.max(QUARTER / longest).ceil().clamp(1.0, 2000.0) as u32
+            // Midpoints lose a piece's own variance where slopes change; half as long pieces change E₁ by less than 2e-3.
+            let by_normal = QUARTER * steepest(axis) / (0.7 * self.roughness);
+            (self.refinement * by_normal.max(QUARTER / longest)).ceil().clamp(1.0, 2000.0) as u32
         };
         let (nu, nv) = (pieces(0), pieces(1));
         for j in 0..nv {
@@ -163,6 +185,14 @@ impl<'a> Reference<'a> {
         let sum: f64 = values.iter().sum();
         values.into_iter().map(|v| v / sum).collect()
     }
+}
+
+/// First and last quarter texels, by column and row, within reach of a footprint.
+fn quarters_under(footprint: &Footprint) -> (DVec2, DVec2) {
+    let (minor, major, axis) = footprint.principal();
+    let extent = DVec2::new((axis.x * major).hypot(axis.y * minor), (axis.y * major).hypot(axis.x * minor));
+    let reach = extent.max(DVec2::splat(1e-6)) * REACH;
+    (((footprint.mean - reach) * 2.0).floor(), ((footprint.mean + reach) * 2.0).floor())
 }
 
 /// Quadratic B-spline at the bins before, at and after a place `f` (−½ … ½) from the middle one.
