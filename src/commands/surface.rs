@@ -99,6 +99,14 @@ impl SurfaceFlags {
         Ok(Some(options))
     }
 
+    /// The surface's size in words.
+    pub fn size_text(&self) -> String {
+        match self.synthesize {
+            Some(SurfaceSize::Texels(width, height)) => format!("surface of {width} × {height} texels"),
+            _ => "surface without end".to_owned(),
+        }
+    }
+
     fn normal_map_size(&self) -> Result<(u32, u32), Failure> {
         match (self.normal_map_size, self.synthesize) {
             (Some(size), _) => Ok(size),

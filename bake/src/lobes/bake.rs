@@ -188,7 +188,13 @@ pub(crate) fn reduce(options: &LobesOptions, grid: &LobeLevel, x: u32, y: u32, p
 }
 
 /// What a cell of the first level is reduced from: seeds, or cells of half its edge that are not kept.
-pub(crate) fn finest_parts(map: &NormalMap, options: &LobesOptions, cell: &LobeLevel, x: u32, y: u32) -> Vec<Gaussian4> {
+pub(crate) fn finest_parts(
+    map: &NormalMap,
+    options: &LobesOptions,
+    cell: &LobeLevel,
+    x: u32,
+    y: u32,
+) -> Vec<Gaussian4> {
     let seed_cell = if options.seeds == 4 { SEED_CELL / 2 } else { SEED_CELL };
     if cell.cell_texels <= seed_cell {
         return cell_seeds(map, options, cell, x, y);

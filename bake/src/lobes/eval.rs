@@ -156,16 +156,35 @@ pub fn box_lobe(normal: Vec2, jacobian: Mat2, twist: Vec2, size: Vec2) -> Lobe {
     }
 }
 
-/// A quarter of a lobe, whose spread has the columns f and g: the one beside it along `signs` (±1) of both. Four quarters
-/// have the lobe's moments, as the quarters of a box have.
-pub fn quarter(lobe: &Lobe, signs: Vec2) -> Lobe {
-    const APART: f32 = 0.866_025_4; // √3 / 2
-    let d = lobe.spread * (signs * APART);
+/// Signs of a lobe's quarters along the columns of its spread.
+pub const QUARTERS: [Vec2; 4] =
+    [Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0), Vec2::new(-1.0, 1.0), Vec2::new(1.0, 1.0)];
+
+/// From a lobe's mean to that of a quarter. Four quarters have the lobe's moments, as the quarters of a box have.
+pub fn quarter_offset(lobe: &Lobe, signs: Vec2) -> Vec2 {
+    lobe.spread * (signs * APART)
+}
+
+const APART: f32 = 0.866_025_4; // √3 / 2
+
+/// The part of a lobe that is made of some of its quarters: weight, mean and spread along both columns are theirs.
+pub fn part_of(lobe: &Lobe, quarters: [bool; 4]) -> Lobe {
+    let (mut count, mut signs) = (0.0, Vec2::ZERO);
+    for k in 0..4 {
+        if quarters[k] {
+            count += 1.0;
+            signs += QUARTERS[k];
+        }
+    }
+    let mean = if count > 0.0 { signs / count } else { Vec2::ZERO };
+    let d = quarter_offset(lobe, mean);
+    // A quarter of the variance lies within quarters, the rest between their means.
+    let narrow = |m: f32| (1.0 - 0.75 * m * m).sqrt();
     Lobe {
-        weight: 0.25 * lobe.weight,
+        weight: 0.25 * count * lobe.weight,
         position: lobe.position + d,
         normal: lobe.normal + lobe.jacobian * d,
-        spread: lobe.spread * 0.5,
+        spread: Mat2::from_cols(lobe.spread.x_axis * narrow(mean.x), lobe.spread.y_axis * narrow(mean.y)),
         ..*lobe
     }
 }

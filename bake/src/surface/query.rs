@@ -20,27 +20,41 @@ use glint_formats::synthesis::Layout;
 /// A surface without end is taken to repeat after as many patches as fit into this many texels, so that places have digits.
 const MOST_TEXELS: i64 = 1 << 30;
 
-/// Signs of a lobe's quarters.
-const QUARTERS: [[f32; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
-
 /// Choice between speed and accuracy at run time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceSettings {
     /// Choice of levels.
     pub query: QuerySettings,
-    /// Edge from which on blocks that seams cross are read by the quarters of lobes that each patch owns; smaller ones by
-    /// blocks of the finest level and boxes.
+    /// Edge in texels of a level's cells from which on blocks that seams cross are read by the parts of lobes that each
+    /// patch owns; those of smaller ones by blocks of the finest level and boxes.
     pub owned_from: u32,
+    /// Geometric mean of the footprint's deviations, in texels, from which on all but the finest blocks are read so.
+    pub owned_sigma: f32,
     /// Largest range of normals in a box at a seam, over σ_r, that is not halved.
     pub box_range: f32,
-    /// Footprint's minor deviation, in texels, up to which boxes at seams are halved along both axes.
+    /// Footprint's major deviation, in texels, up to which boxes at seams are halved along both axes.
     pub halves_until: f32,
 }
 
 impl Default for SurfaceSettings {
     fn default() -> SurfaceSettings {
-        SurfaceSettings { query: QuerySettings::default(), owned_from: 32, box_range: 2.0, halves_until: 6.0 }
+        SurfaceSettings {
+            query: QuerySettings::default(),
+            owned_from: 32,
+            owned_sigma: 10.0,
+            box_range: 2.0,
+            halves_until: 6.0,
+        }
     }
+}
+
+/// Bits 0, 2, 4 … of a number as a number of their own.
+fn even_bits(v: u32) -> i32 {
+    let mut bits = v & 0x5555_5555;
+    bits = (bits | bits >> 1) & 0x3333_3333;
+    bits = (bits | bits >> 2) & 0x0f0f_0f0f;
+    bits = (bits | bits >> 4) & 0x00ff_00ff;
+    ((bits | bits >> 8) & 0xffff) as i32
 }
 
 /// A footprint by its axes. Its centre is relative to a texel of the surface, a corner of blocks of every level.
@@ -93,34 +107,47 @@ impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
         if self.surface.lobes.params.filter == Filter::Linear { 0.5 } else { 0.0 }
     }
 
-    /// Adds the block of a level's edge whose first texel lies `at` from the origin.
+    /// Adds the block of a level's edge whose first texel lies `at` from the origin, as one block where that can be read, else
+    /// by its quarters and theirs, down to the finest level.
     fn add_block(&mut self, level: usize, at: [i32; 2]) {
-        let synthesis = &self.surface.synthesis;
+        let levels = &self.surface.lobes.params.levels;
+        let finest = levels[0].cell_texels as i32;
+        let frame = &self.view.frame;
+        let large = (frame.minor * frame.major).sqrt() >= self.settings.owned_sigma;
+        let owned = levels[level].cell_texels >= self.settings.owned_from || large;
+        // Blocks of the finest level in the order of their quarters: those of a larger block follow each other.
+        let mut block = 0u32;
+        while block < 1 << (2 * level) {
+            let place = [at[0] + finest * even_bits(block), at[1] + finest * even_bits(block >> 1)];
+            let mut size = if block == 0 { level } else { block.trailing_zeros() as usize / 2 };
+            while size > 0 && !self.add_whole_block(size, place, owned) {
+                size -= 1;
+            }
+            if size == 0 && !self.add_whole_block(0, place, false) {
+                self.add_texels(place, finest as u32);
+            }
+            block += 1 << (2 * size);
+        }
+    }
+
+    /// Adds a block by cells of its own edge, if `owned` where seams cross too; says whether there are such.
+    fn add_whole_block(&mut self, level: usize, at: [i32; 2], owned: bool) -> bool {
         let params = &self.surface.lobes.params;
         let edge = params.levels[level].cell_texels;
         let step = params.step(edge);
         let [x, y] = self.on_surface(at);
-        if let Some((sx, sy)) = synthesis.block_source(x, y, edge as i32, step) {
-            return self.add_cell(level, [sx, sy], at, false);
+        if let Some((sx, sy)) = self.surface.synthesis.block_source(x, y, edge as i32, step) {
+            self.add_cell(level, [sx, sy], at, false);
+            return true;
         }
-        if edge >= self.settings.owned_from
-            && let Some((cells, count)) = self.surface.cells_at_corners([x, y], edge, step)
-        {
-            for cell in &cells[..count] {
-                self.add_cell(level, *cell, at, true);
-            }
-            return;
+        if !owned {
+            return false;
         }
-        if level == 0 {
-            return self.add_texels(at, edge);
+        let Some((cells, count)) = self.surface.cells_at_corners([x, y], edge, step) else { return false };
+        for cell in &cells[..count] {
+            self.add_cell(level, *cell, at, true);
         }
-        let finest = params.levels[0].cell_texels as i32;
-        let parts = edge as i32 / finest;
-        for j in 0..parts {
-            for i in 0..parts {
-                self.add_block(0, [at[0] + i * finest, at[1] + j * finest]);
-            }
-        }
+        true
     }
 
     /// Adds the boxes of a block of `edge` texels. Those of a bilinear map lie between texel centres; at the block's border
@@ -138,7 +165,7 @@ impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
         }
     }
 
-    /// Adds the lobes of the cell at sample texel `source` where the block `at` lies; if `owned`, those whose middle the
+    /// Adds the lobes of the cell at sample texel `source` where the block `at` lies; if `owned`, the parts of them that the
     /// surface shows there.
     fn add_cell(&mut self, level: usize, source: [u32; 2], at: [i32; 2], owned: bool) {
         let lobes = &self.surface.lobes;
@@ -159,21 +186,15 @@ impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
                 continue;
             }
             let last = grid.cell_texels as i32 - 1;
-            let quarters = QUARTERS.map(|signs| eval::quarter(&lobe, Vec2::from(signs)));
-            let owned = quarters.map(|part| {
-                let texel = |v: f32| (v as i32).clamp(0, last);
-                let (px, py) = (texel(part.position.x), texel(part.position.y));
-                let shown = self.surface.synthesis.source_texel(x.wrapping_add(px), y.wrapping_add(py));
-                shown == ((source[0] + px as u32) % params.width, (source[1] + py as u32) % params.height)
-            });
-            if owned == [true; 4] {
-                self.add_lobe(&lobe, corner);
-                continue;
-            }
+            let mut shown = [false; 4];
             for k in 0..4 {
-                if owned[k] {
-                    self.add_lobe(&quarters[k], corner);
-                }
+                let place = lobe.position + eval::quarter_offset(&lobe, eval::QUARTERS[k]);
+                let (px, py) = ((place.x as i32).clamp(0, last), (place.y as i32).clamp(0, last));
+                let found = self.surface.synthesis.source_texel(x.wrapping_add(px), y.wrapping_add(py));
+                shown[k] = found == ((source[0] + px as u32) % params.width, (source[1] + py as u32) % params.height);
+            }
+            if shown != [false; 4] {
+                self.add_lobe(&eval::part_of(&lobe, shown), corner);
             }
         }
     }
@@ -197,7 +218,7 @@ impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
         let most = self.settings.box_range * self.roughness;
         let ranges = [jacobian.x_axis.length() * size.x, jacobian.y_axis.length() * size.y];
         // Larger footprints see many boxes: there only the wider range is halved.
-        let least = if self.view.frame.minor <= self.settings.halves_until { 0.0 } else { ranges[0].max(ranges[1]) };
+        let least = if self.view.frame.major <= self.settings.halves_until { 0.0 } else { ranges[0].max(ranges[1]) };
         let [columns, rows] = ranges.map(|range| if range > most && range >= least { 2 } else { 1 });
         let part = size / Vec2::new(columns as f32, rows as f32);
         for j in 0..rows {

@@ -42,8 +42,7 @@ pub(super) fn reduce(
             })
             .collect()
     };
-    let mut sets: Vec<Vec<Gaussian4>> =
-        cells.iter().zip(&counts).filter(|(_, count)| **count > 0).map(seen).collect();
+    let mut sets: Vec<Vec<Gaussian4>> = cells.iter().zip(&counts).filter(|(_, count)| **count > 0).map(seen).collect();
     let settings =
         MergeSettings { merge: options.merge, lobes: options.lobes_per_cell as usize, blur: [1.0, options.roughness] };
     let mut round = 0;

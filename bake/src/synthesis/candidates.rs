@@ -4,6 +4,7 @@ use super::options::SynthesisOptions;
 use crate::normal_map::NormalMap;
 use crate::rng::ItemRng;
 use glint_formats::ndf_maps::Wrap;
+use std::collections::BTreeSet;
 
 /// Purpose of the random numbers that thin out candidates.
 const PURPOSE: u32 = 50;
@@ -32,19 +33,26 @@ impl Candidates {
     /// There is one at least when the options fit the sample.
     pub fn new(sample: &NormalMap, options: &SynthesisOptions) -> Candidates {
         let axis = |side: u32| -> Vec<u16> {
-            let (first, last) = match sample.wrap {
-                Wrap::Repeat => (0, side - 1),
-                Wrap::Clamp => (options.first_offset(), side - options.patch),
-            };
+            let (first, last) = options.offset_range(side, sample.wrap);
             (first..=last).step_by(options.alignment as usize).map(|offset| offset as u16).collect()
         };
         let (columns, rows) = (axis(sample.width), axis(sample.height));
-        let mut picked: Vec<u32> = (0..columns.len() as u32 * rows.len() as u32).collect();
-        if picked.len() > options.max_candidates as usize {
-            picked = ItemRng::new(options.seed, PURPOSE, 0).permutation(picked.len() as u32);
-            picked.truncate(options.max_candidates as usize);
-            picked.sort_unstable();
-        }
+        let all = columns.len() as u32 * rows.len() as u32;
+        let wanted = options.max_candidates;
+        let mut rng = ItemRng::new(options.seed, PURPOSE, 0);
+        let mut picked: Vec<u32> = if all <= wanted {
+            (0..all).collect()
+        } else if all / 4 <= wanted {
+            rng.permutation(all)[..wanted as usize].to_vec()
+        } else {
+            // Few of many: drawing anew what was drawn before takes less than an order of them all.
+            let mut drawn = BTreeSet::new();
+            while drawn.len() < wanted as usize {
+                drawn.insert(rng.below(all));
+            }
+            drawn.into_iter().collect()
+        };
+        picked.sort_unstable();
         let offset = |at: u32| [columns[at as usize % columns.len()], rows[at as usize / columns.len()]];
         let offsets: Vec<[u16; 2]> = picked.into_iter().map(offset).collect();
         let likeness =

@@ -1,5 +1,5 @@
 //! Which texel of the sample a texel of the surface shows, from the stored bytes: integer twin of the WGSL of the same
-//! names. A look-up reads at most four offsets and five entries of paths; there are no loops.
+//! names. A look-up reads one offset and at most six entries of paths; there are no loops.
 //!
 //! A block of the surface that shows one whole block of the sample may be answered by a cell of the sample's MIP:
 //! [`Synthesis::source_block`] says when that is exact, [`Synthesis::nominal_block`] when it is but for seams.

@@ -8,6 +8,9 @@ use glint_formats::synthesis::{MAX_COLOURS, MAX_OVERLAP, MAX_PATCHES, MAX_SAMPLE
 /// Most offsets among which patches are chosen.
 pub const MAX_CANDIDATES: u32 = 4096;
 
+/// Bytes of a texel's features.
+const FEATURE_BYTES: u64 = 12;
+
 /// Most bytes that the tables of a bake may take.
 const MAX_TABLE_BYTES: u64 = 320 << 20;
 
@@ -160,11 +163,10 @@ impl SynthesisOptions {
                 "the sample has {width}×{height} texels, at most {MAX_SAMPLE_SIZE} a side can be; crop it"
             )));
         }
-        let bytes = self.table_bytes();
+        let bytes = self.table_bytes(sample);
         if bytes > MAX_TABLE_BYTES {
             return Err(BakeError::LimitExceeded(format!(
-                "the errors of {} candidates with a patch of {} and an overlap of {} take {bytes} bytes, at most \
-                 {MAX_TABLE_BYTES}; ask for fewer candidates or a smaller patch",
+                "a sample of {width}×{height} texels and up to {} candidates, with a patch of {} and an overlap of {}, take                  {bytes} bytes to compare, at most {MAX_TABLE_BYTES}; crop the sample, or ask for a smaller patch or overlap",
                 self.max_candidates, self.patch, self.overlap
             )));
         }
@@ -193,10 +195,24 @@ impl SynthesisOptions {
         }
     }
 
-    /// Bytes of the strips and the errors of every pair, at most.
-    fn table_bytes(&self) -> u64 {
-        let candidates = u64::from(self.max_candidates);
-        let strip = u64::from(self.overlap) * u64::from(self.patch + self.overlap) * 12;
-        candidates * strip * 4 + candidates * candidates * 9
+    /// First and last offset along an axis of the sample of this length.
+    pub fn offset_range(&self, side: u32, wrap: Wrap) -> (u32, u32) {
+        match wrap {
+            Wrap::Repeat => (0, side - 1),
+            Wrap::Clamp => (self.first_offset(), side - self.patch),
+        }
+    }
+
+    /// Bytes of the features, the strips and the errors of every pair, at most.
+    fn table_bytes(&self, sample: &NormalMap) -> u64 {
+        let along = |side: u32| {
+            let (first, last) = self.offset_range(side, sample.wrap);
+            u64::from((last - first) / self.alignment + 1)
+        };
+        let candidates = u64::from(self.max_candidates).min(along(sample.width) * along(sample.height));
+        let strip = u64::from(self.overlap) * u64::from(self.patch + self.overlap) * FEATURE_BYTES;
+        let features = u64::from(sample.width) * u64::from(sample.height) * FEATURE_BYTES;
+        // Two strips of a candidate are held at a time; a tile has four sides. A pair has two errors and a likeness.
+        features + candidates * strip * 4 + candidates * candidates * 9
     }
 }
