@@ -28,6 +28,8 @@ mod export;
 mod generate;
 #[path = "cli/info.rs"]
 mod info;
+#[path = "cli/lobes.rs"]
+mod lobes;
 #[path = "cli/ninja.rs"]
 mod ninja;
 #[path = "cli/pipelines.rs"]
@@ -46,3 +48,5 @@ mod report;
 mod schema;
 #[path = "cli/support.rs"]
 mod support;
+#[path = "cli/surface.rs"]
+mod surface;

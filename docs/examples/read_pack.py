@@ -23,6 +23,12 @@ NUMBERS = {"u8": "<B", "u16": "<H", "u32": "<I", "u64": "<Q", "f32": "<f", "f64"
 WRAP = ("enum", ["Repeat", "Clamp"])
 LEVEL = dict(tile_texels="u32", tiles_x="u32", tiles_y="u32", first_tile="u32")
 CELLS = dict(cells_x="u32", cells_y="u32", cell_texels="f32", seed="u64")
+PAIR = ("array", 2, "f32")
+LOBES = dict(
+    cell_texels="u32", cells_x="u32", cells_y="u32", first_lobe="u32", weight_scale="f32", position_sigma=PAIR,
+    residual_sigma=PAIR, jacobian_scale="f32")
+GRID = dict(width="u32", height="u32", columns="u32", rows="u32")
+TILES = dict(colours="u32", variants="u32", margin="u32", hash_seed="u32")
 PROVENANCE = dict(
     tool_version="string", git_hash="string", method="string", options=("list", ("array", 2, "string")), seed="u64",
     inputs=("list", dict(name="string", xxh3_128="string", bytes="u64")), normal_convention="string",
@@ -47,8 +53,19 @@ PARAMETERS = {
     "ALPP": dict(
         width="u32", height="u32", wrap=WRAP, base_roughness="f32", storage=("enum", ["F16", "Snorm8"]),
         anisotropic="bool", measured=dict(normal_angle="f64", roughness="f64", table_mean="f64")),
+    "LOPP": dict(
+        width="u32", height="u32", wrap=WRAP, filter=("enum", ["Linear", "Nearest"]), intrinsic_roughness="f32",
+        storage=("enum", ["Packed", "Half"]), normals=("enum", ["Snorm16", "Unorm8"]),
+        merge=("enum", ["KMeans", "Moments", "Runnalls"]), seeds="u32", lobes_per_cell="u32", step_texels="u32",
+        normal_low=PAIR, normal_extent=PAIR, levels=("list", LOBES), measured_roughness="f32",
+        measured=("list", dict(sigma_texels="f32", mean="f32", worst="f32"))),
+    "SYPP": dict(
+        sample_width="u32", sample_height="u32", wrap=WRAP, patch="u32", overlap="u32", alignment="u32", alpha="f32",
+        error_tolerance="f32", seed="u64", layout=("enum", [("Patches", GRID), ("CornerTiles", TILES)]),
+        measured=dict(seam_ratio="f64", distinct_offsets="u32")),
 }
-KINDS = set(PARAMETERS) | set("NMTI NMDE NMNO PLPL PLNO PLCL SDTB ENRA ENIN ENCO ENAL ALNM ALRO ALLI ALLT".split())
+KINDS = set(PARAMETERS) | set(
+    "NMTI NMDE NMNO PLPL PLNO PLCL SDTB ENRA ENIN ENCO ENAL ALNM ALRO ALLI ALLT LOBE LONM SYPO SYSE".split())
 TEXEL_BYTES = {9: 1, 10: 1, 13: 1, 16: 2, 17: 2, 37: 4, 38: 4, 41: 4, 70: 2, 71: 2, 74: 2, 76: 2, 77: 4, 78: 4, 81: 4,
                83: 4, 91: 8, 92: 8, 95: 8, 97: 8, 98: 4, 100: 4, 101: 8, 103: 8, 107: 16, 109: 16, 122: 4, 123: 4}
 

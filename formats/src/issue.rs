@@ -99,6 +99,18 @@ issue_codes! {
     AreaLightRoughness = 3043, "area light roughness out of range";
     LtcShape = 3044, "LTC table of wrong format or size";
     LtcValue = 3045, "LTC table value out of range";
+    LobesParameters = 3050, "lobe parameter out of range";
+    LobesLevels = 3051, "lobe levels inconsistent";
+    LobesCount = 3052, "lobe count differs from levels";
+    LobeValue = 3053, "lobe value out of range";
+    LobeCellEmpty = 3054, "cell without lobes";
+    LobesNormalsShape = 3055, "lobe normals differ from parameters";
+    LobesNormal = 3056, "lobe normal out of range";
+    SynthesisParameters = 3060, "synthesis parameter out of range";
+    SynthesisShape = 3061, "synthesis buffer differs from parameters";
+    SynthesisOffset = 3062, "synthesis patch outside sample";
+    SynthesisSeam = 3063, "synthesis seam path broken";
+    SurfaceMismatch = 3064, "lobes and synthesis of a surface do not fit";
 }
 
 impl fmt::Display for IssueCode {

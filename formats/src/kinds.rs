@@ -4,8 +4,8 @@ use crate::container::{FourCc, SectionEntry};
 use crate::issue::{Issue, IssueCode};
 use crate::sections::Sections;
 use crate::{
-    area_light, area_light_check, dictionary, dictionary_check, environment, environment_check, ndf_maps,
-    ndf_maps_check, placement_check, provenance,
+    area_light, area_light_check, dictionary, dictionary_check, environment, environment_check, lobes, lobes_check,
+    ndf_maps, ndf_maps_check, placement_check, provenance, surface_check, synthesis, synthesis_check,
 };
 
 /// A section kind this version reads.
@@ -43,6 +43,12 @@ pub const KNOWN: &[KnownKind] = &[
     KnownKind { kind: area_light::ROUGHNESS, version: 1, title: "area light roughness" },
     KnownKind { kind: area_light::INVERSE, version: 1, title: "LTC inverse matrices" },
     KnownKind { kind: area_light::TERMS, version: 1, title: "LTC terms" },
+    KnownKind { kind: lobes::PARAMS, version: 1, title: "lobe parameters" },
+    KnownKind { kind: lobes::LOBES, version: 1, title: "lobes" },
+    KnownKind { kind: lobes::NORMALS, version: 1, title: "lobe normals" },
+    KnownKind { kind: synthesis::PARAMS, version: 1, title: "synthesis parameters" },
+    KnownKind { kind: synthesis::OFFSETS, version: 1, title: "synthesis patch offsets" },
+    KnownKind { kind: synthesis::SEAMS, version: 1, title: "synthesis seam paths" },
 ];
 
 /// A check of the contents of some kinds.
@@ -56,6 +62,9 @@ pub(crate) const CHECKS: &[Check] = &[
     dictionary_check::check,
     environment_check::check,
     area_light_check::check,
+    lobes_check::check,
+    synthesis_check::check,
+    surface_check::check,
 ];
 
 /// What this version knows of a kind.

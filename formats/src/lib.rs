@@ -19,12 +19,17 @@ mod error;
 pub mod export;
 mod issue;
 pub mod kinds;
+pub mod lobes;
+mod lobes_check;
 pub mod ndf_maps;
 mod ndf_maps_check;
 pub mod params;
 mod placement_check;
 pub mod provenance;
 mod sections;
+mod surface_check;
+pub mod synthesis;
+mod synthesis_check;
 mod verify;
 pub mod vk_format;
 

@@ -5,8 +5,10 @@ use crate::samples::*;
 use glint_formats::area_light::{self, AreaLightParams};
 use glint_formats::dictionary::{self, DictionaryParams};
 use glint_formats::environment::{self, EnvironmentParams};
+use glint_formats::lobes::{self, HalfLobe, LobeStorage, LobesParams, PackedLobe};
 use glint_formats::ndf_maps::*;
 use glint_formats::provenance::{PROVENANCE, Provenance};
+use glint_formats::synthesis::{self, Layout, SynthesisParams};
 use glint_formats::{IssueCode, Resource, Section, params};
 
 pub fn cases() -> Vec<Case> {
@@ -19,6 +21,9 @@ pub fn cases() -> Vec<Case> {
     cases.extend(dictionary_cases());
     cases.extend(environment_cases());
     cases.extend(area_light_cases());
+    cases.extend(lobes_cases());
+    cases.extend(synthesis_cases());
+    cases.push(case(IssueCode::SurfaceMismatch, surface_with(|_, surface| surface.alignment = 2)));
     cases
 }
 
@@ -353,4 +358,233 @@ fn every_way_an_area_light_can_be_wrong_is_found() {
         assert_eq!(codes(&pack(without(good_area_light(), kind))), [IssueCode::MissingSection]);
     }
     assert_eq!(codes(&pack(without(good_area_light(), area_light::PARAMS))), [IssueCode::OrphanSection; 4]);
+}
+
+fn lobes_with_params(edit: impl Fn(&mut LobesParams)) -> Vec<u8> {
+    let mut params = lobes_params(LobeStorage::Packed);
+    edit(&mut params);
+    pack(lobes_sections(&params, &packed_lobes(), &half_lobes(), &lobes_normals()))
+}
+
+fn lobes_with_packed(edit: impl Fn(&mut Vec<PackedLobe>)) -> Vec<u8> {
+    let mut lobes = packed_lobes();
+    edit(&mut lobes);
+    pack(lobes_sections(&lobes_params(LobeStorage::Packed), &lobes, &[], &lobes_normals()))
+}
+
+fn lobes_with_half(edit: impl Fn(&mut HalfLobe)) -> Vec<u8> {
+    let mut lobes = half_lobes();
+    edit(&mut lobes[2]);
+    pack(lobes_sections(&lobes_params(LobeStorage::Half), &[], &lobes, &lobes_normals()))
+}
+
+/// A texel in the corner of the square, outside the disk.
+fn lobes_with_corner_normal() -> Vec<u8> {
+    let mut normals = lobes_normals();
+    normals[6..8].fill(255);
+    pack(lobes_sections(&lobes_params(LobeStorage::Packed), &packed_lobes(), &[], &normals))
+}
+
+fn lobes_cases() -> Vec<Case> {
+    let format = |params: &mut LobesParams| params.normals = lobes::NormalsStorage::Snorm16;
+    vec![
+        case(IssueCode::LobesParameters, lobes_with_params(|params| params.lobes_per_cell = 0)),
+        case(IssueCode::LobesLevels, lobes_with_params(|params| params.levels[1].first_lobe = 5)),
+        case(IssueCode::LobesCount, lobes_with_packed(|lobes| lobes.truncate(4))),
+        case(IssueCode::LobeValue, lobes_with_packed(|lobes| lobes[2].correlation[1] = -128)),
+        case(IssueCode::LobeCellEmpty, lobes_with_packed(|lobes| lobes[4].normal_weight = 0x00ff_ffff)),
+        case(IssueCode::LobesNormalsShape, lobes_with_params(format)),
+        case(IssueCode::LobesNormal, lobes_with_corner_normal()),
+    ]
+}
+
+#[test]
+fn every_way_lobes_can_be_wrong_is_found() {
+    assert_eq!(codes(&lobes_with_params(|_| ())), [] as [IssueCode; 0]);
+    assert_eq!(codes(&lobes_with_half(|_| ())), [] as [IssueCode; 0]);
+    let parameters: [fn(&mut LobesParams); 10] = [
+        |params| params.measured_roughness = 0.01,
+        |params| params.width = 0,
+        |params| params.height = 20_000,
+        |params| params.lobes_per_cell = 257,
+        |params| params.seeds = 2,
+        |params| params.intrinsic_roughness = f32::NAN,
+        |params| params.normal_low[0] = -1.5,
+        |params| params.normal_extent[1] = f32::NAN,
+        |params| params.normal_extent[0] = 1.75,
+        |params| params.measured[0].mean = -0.1,
+    ];
+    for edit in parameters {
+        assert_eq!(codes(&lobes_with_params(edit)), [IssueCode::LobesParameters]);
+    }
+    let levels: [fn(&mut LobesParams); 11] = [
+        |params| params.levels.clear(),
+        |params| params.levels.truncate(1),
+        |params| params.levels[0].cell_texels = 6,
+        |params| params.levels[1].cell_texels = 16,
+        |params| params.levels[0].cells_y = 2,
+        |params| params.levels[0].weight_scale = 0.0,
+        |params| params.levels[0].position_sigma = [0.0, 1.0],
+        |params| params.levels[0].position_sigma = [2.0, 1.0],
+        |params| params.levels[0].residual_sigma = [1e-9, 1.0],
+        |params| params.levels[1].jacobian_scale = f32::INFINITY,
+        |params| params.levels[1].first_lobe = 0,
+    ];
+    for edit in levels {
+        assert_eq!(codes(&lobes_with_params(edit)), [IssueCode::LobesLevels]);
+    }
+    let halves: [fn(&mut HalfLobe); 6] = [
+        |lobe| lobe.weight = 0x7e00,
+        |lobe| lobe.position_sigma[1] = 0xbc00,
+        |lobe| lobe.residual_sigma[0] = 0x7c00,
+        |lobe| lobe.jacobian[3] = 0xfc00,
+        |lobe| lobe.correlation[0] = i16::MIN,
+        |lobe| lobe.reserved = 1,
+    ];
+    for edit in halves {
+        let found = codes(&lobes_with_half(edit));
+        assert!(found.contains(&IssueCode::LobeValue), "{found:?}");
+    }
+    assert_eq!(codes(&lobes_with_half(|lobe| lobe.weight = 0)), [IssueCode::LobeCellEmpty]);
+    assert_eq!(codes(&lobes_with_packed(|lobes| lobes[0].jacobian[2] = -128)), [IssueCode::LobeValue]);
+    assert_eq!(codes(&lobes_with_packed(|lobes| lobes.push(PackedLobe::default()))), [IssueCode::LobesCount]);
+    for kind in [lobes::LOBES, lobes::NORMALS] {
+        assert_eq!(codes(&pack(without(good_lobes(), kind))), [IssueCode::MissingSection]);
+    }
+    assert_eq!(codes(&pack(without(good_lobes(), lobes::PARAMS))), [IssueCode::OrphanSection; 2]);
+}
+
+fn synthesis_with_params(edit: impl Fn(&mut SynthesisParams)) -> Vec<u8> {
+    let mut params = synthesis_params();
+    edit(&mut params);
+    pack(synthesis_sections(&params, &synthesis_offsets(), &synthesis_seams()))
+}
+
+fn synthesis_with_offset(offset: [u16; 2]) -> Vec<u8> {
+    pack(synthesis_sections(&synthesis_params(), &[[2, 2], offset], &synthesis_seams()))
+}
+
+fn synthesis_with_seam(word: u32) -> Vec<u8> {
+    let mut seams = synthesis_seams();
+    seams[3] = word;
+    pack(synthesis_sections(&synthesis_params(), &synthesis_offsets(), &seams))
+}
+
+fn synthesis_cases() -> Vec<Case> {
+    vec![
+        case(IssueCode::SynthesisParameters, synthesis_with_params(|params| params.alignment = 3)),
+        case(IssueCode::SynthesisShape, pack(synthesis_sections(&synthesis_params(), &[[2, 2]], &synthesis_seams()))),
+        case(IssueCode::SynthesisOffset, synthesis_with_offset([6, 2])),
+        case(IssueCode::SynthesisSeam, synthesis_with_seam(0b1000000)),
+    ]
+}
+
+#[test]
+fn every_way_a_synthesis_can_be_wrong_is_found() {
+    let edits: [fn(&mut SynthesisParams); 17] = [
+        |params| params.sample_width = 0,
+        |params| params.sample_height = u32::MAX,
+        |params| params.sample_height = 5,
+        |params| params.patch = 3,
+        |params| params.patch = u32::MAX,
+        |params| params.overlap = 3,
+        |params| params.overlap = u32::MAX,
+        |params| params.alignment = 0,
+        |params| params.alpha = 1.5,
+        |params| params.alpha = f32::NAN,
+        |params| params.error_tolerance = f32::INFINITY,
+        |params| params.error_tolerance = -1.0,
+        |params| params.measured.seam_ratio = f64::NAN,
+        |params| params.layout = Layout::Patches { width: 0, height: 4, columns: 0, rows: 1 },
+        |params| params.layout = Layout::Patches { width: 7, height: 4, columns: 3, rows: 1 },
+        |params| params.layout = Layout::Patches { width: u32::MAX, height: 4, columns: 1 << 30, rows: 1 },
+        |params| params.layout = Layout::CornerTiles { colours: 1, variants: 1, margin: 1, hash_seed: 0 },
+    ];
+    for edit in edits {
+        assert_eq!(codes(&synthesis_with_params(edit)), [IssueCode::SynthesisParameters]);
+    }
+    // Outside, not aligned, and the last that lies inside.
+    for offset in [[0, 2], [2, 4], [3, 2], [u16::MAX, u16::MAX]] {
+        assert_eq!(codes(&synthesis_with_offset(offset)), [IssueCode::SynthesisOffset], "{offset:?}");
+    }
+    assert_eq!(codes(&synthesis_with_offset([4, 2])), []);
+    let lacking = |kind| pack(without(good_synthesis(), kind));
+    assert_eq!(codes(&lacking(synthesis::OFFSETS)), [IssueCode::MissingSection]);
+    assert_eq!(codes(&lacking(synthesis::SEAMS)), [IssueCode::MissingSection]);
+    assert_eq!(codes(&lacking(synthesis::PARAMS)), [IssueCode::OrphanSection; 2]);
+}
+
+/// Offsets and paths of no bits of a sound surface with these parameters.
+fn blank_synthesis(params: &SynthesisParams) -> (Vec<[u16; 2]>, Vec<u32>) {
+    (vec![[2, 2]; params.offset_count() as usize], vec![0; params.seam_words() as usize])
+}
+
+#[test]
+fn every_way_corner_tiles_can_be_wrong_is_found() {
+    let sound = corner_tile_params();
+    let codes_of = |params: &SynthesisParams, seams: &[u32]| {
+        codes(&pack(synthesis_sections(params, &blank_synthesis(&sound).0, seams)))
+    };
+    let (offsets, mut seams) = blank_synthesis(&sound);
+    // One colour and two tiles; a pair of paths of six entries, four paths of eight a tile, all in a word each.
+    assert_eq!((offsets.len(), seams.len()), (3, 10));
+    assert_eq!(codes_of(&sound, &seams), []);
+    seams[9] = 0b1_0000_0000;
+    assert_eq!(codes_of(&sound, &seams), [IssueCode::SynthesisSeam]);
+    let layouts = [(0, 1, 1), (5, 1, 1), (1, 0, 1), (1, 17, 1), (1, 2, 0), (1, 2, 2), (1, 2, u32::MAX)];
+    for (colours, variants, margin) in layouts {
+        let layout = Layout::CornerTiles { colours, variants, margin, hash_seed: 3 };
+        let params = SynthesisParams { layout, ..sound.clone() };
+        assert_eq!(codes_of(&params, &seams), [IssueCode::SynthesisParameters], "{colours} {variants} {margin}");
+    }
+    let odd = SynthesisParams { patch: 11, sample_width: 14, sample_height: 14, alignment: 1, ..sound };
+    assert_eq!(codes_of(&odd, &seams), [IssueCode::SynthesisParameters]);
+}
+
+#[test]
+fn a_path_that_jumps_or_leaves_the_overlap_is_found() {
+    // An overlap of three takes two bits an entry; three is no entry, and from nought to two is no step.
+    let params = SynthesisParams { sample_width: 9, sample_height: 9, patch: 6, overlap: 3, ..synthesis_params() };
+    let layout = Layout::Patches { width: 6, height: 6, columns: 1, rows: 1 };
+    let params = SynthesisParams { alignment: 3, layout, ..params };
+    let codes_of = |word: u32| codes(&pack(synthesis_sections(&params, &[[3, 3]], &[0, word])));
+    assert_eq!(codes_of(0b01_10_01_00), []);
+    assert_eq!(codes_of(0b11_10), [IssueCode::SynthesisSeam]);
+    assert_eq!(codes_of(0b10_00), [IssueCode::SynthesisSeam]);
+}
+
+fn surface_with(edit: impl Fn(&mut LobesParams, &mut SynthesisParams)) -> Vec<u8> {
+    let (mut lobes, mut synthesis) = (surface_lobes_params(), surface_synthesis_params());
+    edit(&mut lobes, &mut synthesis);
+    pack(surface_sections(&lobes, &synthesis))
+}
+
+#[test]
+fn lobes_and_synthesis_that_do_not_fit_are_found() {
+    assert_eq!(codes(&surface_with(|_, _| ())), []);
+    let edits: [fn(&mut LobesParams, &mut SynthesisParams); 5] = [
+        |_, surface| surface.sample_width = 9,
+        |_, surface| surface.wrap = Wrap::Repeat,
+        |_, surface| surface.alignment = 2,
+        |_, surface| (surface.patch, surface.alignment) = (8, 8),
+        |lobes, _| lobes.wrap = Wrap::Repeat,
+    ];
+    for edit in edits {
+        let found = codes(&surface_with(edit));
+        assert!(found.contains(&IssueCode::SurfaceMismatch), "{found:?}");
+    }
+    // Cells of four texels cannot be told from the surface as a whole, and of cells in steps there must be one.
+    let levels: [fn(&mut LobesParams, &mut SynthesisParams); 3] = [
+        |lobes, _| lobes.levels[0].cells_x = 1,
+        |lobes, _| lobes.levels[1].cells_x = 2,
+        |lobes, _| lobes.levels[1].cell_texels = 4,
+    ];
+    for edit in levels {
+        assert_eq!(codes(&surface_with(edit)), [IssueCode::LobesLevels]);
+    }
+    assert_eq!(codes(&surface_with(|lobes, _| lobes.step_texels = 3)), [IssueCode::LobesParameters]);
+    let alone = without(surface_sections(&surface_lobes_params(), &surface_synthesis_params()), synthesis::PARAMS);
+    assert!(codes(&pack(alone)).contains(&IssueCode::MissingSection));
+    let one = LobesParams { levels: vec![surface_lobes_params().levels[1]], ..surface_lobes_params() };
+    assert!(!codes(&pack(surface_sections(&one, &surface_synthesis_params()))).is_empty());
 }

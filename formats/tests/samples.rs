@@ -4,8 +4,10 @@ use glint_formats::area_light::{self, AreaLightParams, NormalStorage};
 use glint_formats::container::{ENTRY_BYTES, FourCc, HEADER_BYTES, Limits, full_mip_count};
 use glint_formats::dictionary::{self, DictionaryParams};
 use glint_formats::environment::{self, EnvironmentParams};
+use glint_formats::lobes::{self, HalfLobe, LobeLevel, LobeStorage, LobesParams, NormalsStorage, PackedLobe};
 use glint_formats::ndf_maps::*;
 use glint_formats::provenance::{InputDigest, PROVENANCE, Provenance};
+use glint_formats::synthesis::{self, Layout, SynthesisParams};
 use glint_formats::{IssueCode, PackBuilder, Resource, Section, validate, vk_format};
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -266,6 +268,170 @@ pub fn good_area_light() -> Vec<Section> {
     area_light_sections(&area_light_params(), &area_light_texels(), &ltc_table())
 }
 
+/// A map of 5 × 3 texels: two cells of 4 texels, one of 8, two lobes each.
+pub fn lobes_params(storage: LobeStorage) -> LobesParams {
+    let level = LobeLevel {
+        cell_texels: 4,
+        cells_x: 2,
+        cells_y: 1,
+        first_lobe: 0,
+        weight_scale: 12.0,
+        position_sigma: [0.3, 2.0],
+        residual_sigma: [1e-5, 0.02],
+        jacobian_scale: 0.1,
+    };
+    LobesParams {
+        width: 5,
+        height: 3,
+        wrap: Wrap::Repeat,
+        filter: lobes::Filter::Linear,
+        intrinsic_roughness: 0.02,
+        storage,
+        normals: NormalsStorage::Unorm8,
+        merge: lobes::Merge::Runnalls,
+        seeds: 4,
+        lobes_per_cell: 2,
+        step_texels: 0,
+        normal_low: [-0.5, -0.25],
+        normal_extent: [0.75, 0.5],
+        levels: vec![level, LobeLevel { cell_texels: 8, cells_x: 1, first_lobe: 4, ..level }],
+        measured_roughness: 0.02,
+        measured: vec![lobes::FootprintError { sigma_texels: 2.0, mean: 0.01, worst: 0.02 }],
+    }
+}
+
+/// One lobe a cell, and one without weight.
+pub fn packed_lobes() -> Vec<PackedLobe> {
+    let lobe = PackedLobe {
+        jacobian: [3, -4, 127, 0],
+        normal_weight: 0xff80_0800,
+        position: [100, 200],
+        correlation: [-127, 5],
+        position_sigma: [9, 255],
+        residual_sigma: [0, 30],
+    };
+    [lobe, PackedLobe::default()].repeat(3)
+}
+
+/// The same as half floats.
+pub fn half_lobes() -> Vec<HalfLobe> {
+    let lobe = HalfLobe {
+        jacobian: [0x2c00, 0xac00, 0, 0],
+        normal: [9, 0xffff],
+        position: [0, 7],
+        position_sigma: [0x3800, 0x3c00],
+        residual_sigma: [0, 0x1400],
+        correlation: [-32767, 3],
+        weight: 0x3c00,
+        reserved: 0,
+    };
+    [lobe, HalfLobe::default()].repeat(3)
+}
+
+/// The three sections of a map's lobes.
+pub fn lobes_sections(params: &LobesParams, packed: &[PackedLobe], half: &[HalfLobe], normals: &[u8]) -> Vec<Section> {
+    let texture =
+        Resource::Texture { vk_format: vk_format::R8G8_UNORM, width: 5, height: 3, layers: 1, faces: 1, mips: 1 };
+    let records = match params.storage {
+        LobeStorage::Packed => Section::buffer(lobes::LOBES, "hide", packed),
+        LobeStorage::Half => Section::buffer(lobes::LOBES, "hide", half),
+    };
+    vec![
+        Section::parameters(lobes::PARAMS, "hide", params),
+        records,
+        Section::texture(lobes::NORMALS, "hide", texture, normals.to_vec()),
+    ]
+}
+
+/// Normals of [`lobes_params`].
+pub fn lobes_normals() -> Vec<u8> {
+    vec![128; 5 * 3 * 2]
+}
+
+pub fn good_lobes() -> Vec<Section> {
+    lobes_sections(&lobes_params(LobeStorage::Packed), &packed_lobes(), &half_lobes(), &lobes_normals())
+}
+
+/// A surface of 2 × 1 patches of four texels, which overlap by two.
+pub fn synthesis_params() -> SynthesisParams {
+    SynthesisParams {
+        sample_width: 8,
+        sample_height: 6,
+        wrap: Wrap::Clamp,
+        patch: 4,
+        overlap: 2,
+        alignment: 2,
+        alpha: 0.9,
+        error_tolerance: 0.5,
+        seed: 7,
+        layout: Layout::Patches { width: 7, height: 4, columns: 2, rows: 1 },
+        measured: synthesis::MeasuredError { seam_ratio: 1.25, distinct_offsets: 2 },
+    }
+}
+
+/// Two tiles for four corners of the one colour.
+pub fn corner_tile_params() -> SynthesisParams {
+    let layout = Layout::CornerTiles { colours: 1, variants: 2, margin: 1, hash_seed: 3 };
+    SynthesisParams { sample_width: 12, sample_height: 12, patch: 10, overlap: 2, layout, ..synthesis_params() }
+}
+
+/// Offsets of [`synthesis_params`].
+pub fn synthesis_offsets() -> Vec<[u16; 2]> {
+    vec![[2, 2], [4, 2]]
+}
+
+/// Paths of [`synthesis_params`]: six entries of one bit in a word, left and upper of each patch.
+pub fn synthesis_seams() -> Vec<u32> {
+    vec![0b001100, 0b111111, 0, 0b100000]
+}
+
+/// The three sections of a synthesis.
+pub fn synthesis_sections(params: &SynthesisParams, offsets: &[[u16; 2]], seams: &[u32]) -> Vec<Section> {
+    vec![
+        Section::parameters(synthesis::PARAMS, "gold", params),
+        Section::buffer(synthesis::OFFSETS, "gold", offsets),
+        Section::buffer(synthesis::SEAMS, "gold", seams),
+    ]
+}
+
+pub fn good_synthesis() -> Vec<Section> {
+    synthesis_sections(&synthesis_params(), &synthesis_offsets(), &synthesis_seams())
+}
+
+/// Lobes of the sample of a surface: 2 × 2 cells of 4 texels and the whole, a lobe each.
+pub fn surface_lobes_params() -> LobesParams {
+    let mut params = LobesParams {
+        width: 8,
+        height: 8,
+        wrap: Wrap::Clamp,
+        step_texels: 4,
+        lobes_per_cell: 1,
+        ..lobes_params(LobeStorage::Packed)
+    };
+    params.levels[0].cells_y = 2;
+    params
+}
+
+/// The synthesis that goes with [`surface_lobes_params`].
+pub fn surface_synthesis_params() -> SynthesisParams {
+    SynthesisParams { sample_height: 8, alignment: 4, ..synthesis_params() }
+}
+
+/// The six sections of a surface.
+pub fn surface_sections(lobes: &LobesParams, synthesis: &SynthesisParams) -> Vec<Section> {
+    let format = vk_format::R8G8_UNORM;
+    let texture =
+        Resource::Texture { vk_format: format, width: lobes.width, height: lobes.height, layers: 1, faces: 1, mips: 1 };
+    let normals = vec![128; (lobes.width * lobes.height * 2) as usize];
+    let mut sections = vec![
+        Section::parameters(lobes::PARAMS, "gold", lobes),
+        Section::buffer(lobes::LOBES, "gold", &[packed_lobes()[0]; 5]),
+        Section::texture(lobes::NORMALS, "gold", texture, normals),
+    ];
+    sections.extend(synthesis_sections(synthesis, &[[4, 4]; 2], &synthesis_seams()));
+    sections
+}
+
 /// A pack with every kind of section, one of them compressed.
 pub fn full_pack() -> Vec<u8> {
     let mut sections = vec![provenance_section()];
@@ -275,6 +441,8 @@ pub fn full_pack() -> Vec<u8> {
     sections.extend(dictionary_sections(&dictionary_params(), &dictionary_table()));
     sections.extend(environment_sections(&environment_params(), &environment_indicators(), 0x3c00));
     sections.extend(good_area_light());
+    sections.extend(good_lobes());
+    sections.extend(good_synthesis());
     pack(sections)
 }
 

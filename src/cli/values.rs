@@ -20,6 +20,24 @@ pub fn size(text: &str) -> Result<(u32, u32), String> {
     pair(text).filter(|&(w, h)| fits(w) && fits(h)).ok_or_else(|| "expected WxH, each 1 to 16384, as in 640x480".into())
 }
 
+/// A surface's size: `WxH` texels, or without end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SurfaceSize {
+    /// Width and height in texels.
+    Texels(u32, u32),
+    /// Without end.
+    Unbounded,
+}
+
+/// `WxH` texels, both above 0, or `unbounded`.
+pub fn surface_size(text: &str) -> Result<SurfaceSize, String> {
+    if text == "unbounded" {
+        return Ok(SurfaceSize::Unbounded);
+    }
+    let size = pair(text).filter(|&(w, h)| w > 0 && h > 0).map(|(w, h)| SurfaceSize::Texels(w, h));
+    size.ok_or_else(|| "expected WxH texels, as in 4096x4096, or unbounded".into())
+}
+
 fn pair(text: &str) -> Option<(u32, u32)> {
     let (w, h) = text.split_once('x')?;
     Some((w.parse().ok()?, h.parse().ok()?))

@@ -84,6 +84,12 @@ fn summary(report: &Report, outcome: WriteOutcome) -> String {
     for material in &report.area_lights {
         lines.push(format!("{}: {}", material.name, material.accuracy_line()));
     }
+    for map in &report.lobes {
+        lines.push(format!("{}: {}", map.name, map.accuracy_line()));
+    }
+    for surface in &report.surfaces {
+        lines.push(format!("{}: {}", surface.name, surface.accuracy_line()));
+    }
     let outcome = match outcome {
         WriteOutcome::Written => "written",
         WriteOutcome::Unchanged => "unchanged",

@@ -2,7 +2,7 @@
 //!
 //! A new method is one variant here; projects, their options and ninja edges follow from its flags.
 
-use super::{area_light, dictionary, environment, ndf_maps};
+use super::{area_light, dictionary, environment, lobes, ndf_maps};
 use crate::cli::Terminal;
 use crate::exit::Failure;
 use clap::Subcommand;
@@ -16,6 +16,7 @@ use glint_bake_core::normal_map::NormalMap;
 #[allow(missing_docs)] // The help of the flags says it.
 pub enum Method {
     NdfMaps(Box<ndf_maps::Args>),
+    Lobes(Box<lobes::Args>),
     Dictionary(dictionary::Args),
     Environment(environment::Args),
     AreaLight(Box<area_light::Args>),
@@ -26,6 +27,7 @@ impl Method {
     pub fn run(self, terminal: Terminal) -> Result<(), Failure> {
         match self {
             Method::NdfMaps(args) => ndf_maps::run(*args, terminal),
+            Method::Lobes(args) => lobes::run(*args, terminal),
             Method::Dictionary(args) => dictionary::run(&args, terminal),
             Method::Environment(args) => environment::run(&args, terminal),
             Method::AreaLight(args) => area_light::run(*args, terminal),
@@ -41,8 +43,8 @@ pub enum Draft {
     AreaLight(Box<(NormalMap, AreaLightMaterial)>),
     /// An environment.
     Environment(Box<(EnvironmentImage, Environment)>),
-    /// Nothing that an input could be held against.
-    Procedural,
+    /// Of a method that scenes do not plan.
+    Unplanned,
 }
 
 impl Method {
@@ -56,7 +58,7 @@ impl Method {
             Method::Environment(args) => {
                 environment::draft(&args).map(|(made, bytes)| (Draft::Environment(Box::new(made)), bytes))
             }
-            Method::Dictionary(_) => Ok((Draft::Procedural, 0)),
+            Method::Lobes(_) | Method::Dictionary(_) => Ok((Draft::Unplanned, 0)),
         }
     }
 }

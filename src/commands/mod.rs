@@ -9,6 +9,7 @@ mod environment;
 mod export;
 mod generate;
 mod info;
+mod lobes;
 mod methods;
 mod ndf_maps;
 mod ninja;
@@ -16,6 +17,7 @@ mod normal_maps;
 mod plan;
 mod preview;
 mod report;
+mod surface;
 
 pub use methods::{Draft, Method};
 

@@ -4,16 +4,20 @@ mod area_light;
 mod dictionary;
 pub mod diff;
 mod environment;
+mod lobes;
 mod material;
 mod parameters;
 pub mod plot;
+mod surface;
 mod text;
 
 pub use area_light::AreaLightInfo;
 pub use dictionary::DictionaryInfo;
 pub use environment::EnvironmentInfo;
+pub use lobes::LobesInfo;
 pub use material::MaterialInfo;
 pub use parameters::ParametersInfo;
+pub use surface::SurfaceInfo;
 pub use text::{kib, percent};
 
 use crate::exit::{Exit, Failure};
@@ -55,6 +59,10 @@ pub struct Report {
     pub environments: Vec<EnvironmentInfo>,
     /// Materials of the area-light method.
     pub area_lights: Vec<AreaLightInfo>,
+    /// MIP-mapped lobes.
+    pub lobes: Vec<LobesInfo>,
+    /// Surfaces of patches with the lobes of their samples.
+    pub surfaces: Vec<SurfaceInfo>,
     /// Every parameter section, field by field.
     pub parameters: Vec<ParametersInfo>,
     /// Where the pack comes from.
@@ -99,6 +107,8 @@ impl Report {
             dictionaries: Vec::new(),
             environments: Vec::new(),
             area_lights: Vec::new(),
+            lobes: Vec::new(),
+            surfaces: Vec::new(),
             parameters: Vec::new(),
             provenance: Vec::new(),
             pack: None,
@@ -120,6 +130,8 @@ impl Report {
             report.dictionaries = DictionaryInfo::all_of(&pack);
             report.environments = EnvironmentInfo::all_of(&pack);
             report.area_lights = AreaLightInfo::all_of(&pack);
+            report.lobes = LobesInfo::all_of(&pack);
+            report.surfaces = SurfaceInfo::all_of(&pack);
             report.parameters = ParametersInfo::all_of(&pack);
             report.provenance = decode_all(&pack, PROVENANCE);
         }

@@ -1,6 +1,6 @@
 //! Parameter sections as data. A new kind of parameters adds its row here, and glint-info and exports have its fields.
 
-use glint_formats::{FourCc, Pack, area_light, dictionary, environment, ndf_maps, params};
+use glint_formats::{FourCc, Pack, area_light, dictionary, environment, lobes, ndf_maps, params, synthesis};
 use serde::Serialize;
 
 /// One row a kind of parameters: the kind, the name of its variant, the type of its value.
@@ -33,6 +33,8 @@ kinds! {
     dictionary::PARAMS => Dictionary(dictionary::DictionaryParams),
     environment::PARAMS => Environment(environment::EnvironmentParams),
     area_light::PARAMS => AreaLight(area_light::AreaLightParams),
+    lobes::PARAMS => Lobes(lobes::LobesParams),
+    synthesis::PARAMS => Synthesis(synthesis::SynthesisParams),
 }
 
 /// One parameter section.

@@ -74,6 +74,14 @@ impl Report {
             line(&mut out, String::new());
             out.push_str(&material.to_text());
         }
+        for map in &self.lobes {
+            line(&mut out, String::new());
+            out.push_str(&map.to_text());
+        }
+        for surface in &self.surfaces {
+            line(&mut out, String::new());
+            out.push_str(&surface.to_text());
+        }
         for provenance in &self.provenance {
             line(&mut out, String::new());
             provenance_lines(provenance, &mut out);

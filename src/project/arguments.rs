@@ -160,6 +160,9 @@ impl Methods {
         if key == INPUT && arg.is_none() {
             return Err(format!("{method} has no input; leave it out"));
         }
+        if key == "write-normal-map" {
+            return Err("a picture to look at is written by glint-bake lobes, not by a project; leave it out".into());
+        }
         if key == "output" {
             return Err(
                 "the pack is named after its table and lies in the project's output folder; leave it out".into()

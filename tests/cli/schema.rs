@@ -91,8 +91,15 @@ fn reports_keep_to_the_schema() {
     fs::write(folder.path().join("sky.hdr"), pixels.collect::<Vec<u8>>()).unwrap();
     bake(folder.path(), &["environment", "sky.hdr", "-o", "sky.glintpack", "--face-size", "4"]).ok();
     bake(folder.path(), &["area-light", "flakes.png", "-o", "light.glintpack", "--anisotropic"]).ok();
+    bake(folder.path(), &["lobes", "flakes.png", "-o", "hide.glintpack"]).ok();
+    let sample = glint_bake::input::synthetic::scratches(32, 32, 1);
+    sample.save(folder.path().join("sample.png")).unwrap();
+    let surface = ["lobes", "sample.png", "-o", "surface.glintpack", "--synthesize", "64x48", "--patch", "16"];
+    bake(folder.path(), &[&surface[..], &["--overlap", "4"]].concat()).ok();
     let mut files = vec![
-        "light.glintpack".to_owned(),
+        "surface.glintpack".to_owned(),
+        "light.glintpack".into(),
+        "hide.glintpack".into(),
         "out.glintpack".into(),
         "lobes.glintpack".into(),
         "sky.glintpack".into(),

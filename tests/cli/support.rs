@@ -156,7 +156,7 @@ pub fn sky(path: &Path) {
 }
 
 /// Every kind of pack, and the flags it is baked with.
-const PACKS: [(&str, &[&str]); 9] = [
+const PACKS: [(&str, &[&str]); 11] = [
     (
         "layered.glintpack",
         &["ndf-maps", "flakes.png", "scratches.png", "--layers", "scratches:flakes", "--placement", "stochastic"],
@@ -168,6 +168,8 @@ const PACKS: [(&str, &[&str]); 9] = [
     ("unorm.glintpack", &["environment", "sky.hdr", "--face-size", "4", "--format", "unorm16", "--levels", "7"]),
     ("floats.glintpack", &["environment", "sky.hdr", "--face-size", "4", "--format", "f32", "--compress"]),
     ("light.glintpack", &["area-light", "scratches.png", "--anisotropic"]),
+    ("lobes.glintpack", &["lobes", "scratches.png", "--storage", "f16", "--compress"]),
+    ("surface.glintpack", &["lobes", "worn.png", "--synthesize", "96x64", "--patch", "32", "--overlap", "4"]),
     ("snorm.glintpack", &["area-light", "flakes.png", "--format", "snorm8", "--compress"]),
 ];
 
@@ -176,6 +178,7 @@ pub fn packs() -> (tempfile::TempDir, Vec<&'static str>) {
     static BAKED: OnceLock<Vec<(&str, Vec<u8>)>> = OnceLock::new();
     let folder = maps();
     sky(&folder.path().join("sky.hdr"));
+    synthetic::scratches(64, 64, 2).save(folder.path().join("worn.png")).unwrap();
     let baked = BAKED.get_or_init(|| {
         let bytes_of = |(name, args): (&'static str, &[&str])| {
             bake(folder.path(), &[args, &["-o", name, "-q"]].concat()).ok();

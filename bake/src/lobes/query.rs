@@ -1,0 +1,342 @@
+//! What a footprint sees, as a sum over placed cells, with bounded work.
+//!
+//! Tan et al. 2022, section 5.2. Levels: boxes of the map itself (a texel or less), then the stored levels, then the whole
+//! map seen alike. The level follows from the footprint's minor axis, λ = 1 + log₂(σ / σ₁) with σ₁ = `cell_sigmas` cells
+//! of the finest stored level, raised where a long footprint would visit too many cells. Boxes give way to stored cells
+//! sooner, since their number grows with the footprint's area. Two levels are interpolated as
+//! Eq. 9 means it, the finer by the weight that falls with λ (as printed, the weights belong to the wrong levels), but stored
+//! levels only over the second half of the way between them.
+//!
+//! A cell is visited where it lies: [`Query::add_cell`] takes its address in the map and how far it was moved from there.
+
+use super::bake::BakedLobes;
+use super::eval::{self, Frame, SeenLobe};
+use super::quantise::Scales;
+use super::span::{Slot, slots, span_x};
+use crate::footprint::Footprint;
+use glam::{DVec2, Mat2, Vec2};
+use glint_formats::lobes::Filter;
+use glint_formats::ndf_maps::Wrap;
+
+/// Choice between speed and accuracy at run time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct QuerySettings {
+    /// Footprint's minor deviation, over the edge of a level's cells, from which on the level is read, alone at first.
+    pub cell_sigmas: f32,
+    /// Footprint's minor deviation, over the edge of the finest cells, up to which boxes alone are read.
+    pub boxes_until: f32,
+    /// And from which on no boxes are.
+    pub cells_from: f32,
+    /// Edge of the largest boxes over the footprint's minor deviation.
+    pub box_sigmas: f32,
+    /// Cells a level that a footprint visits, about.
+    pub max_cells: f32,
+    /// Boxes that a footprint visits, about.
+    pub max_boxes: f32,
+    /// Footprints reach this far, in standard deviations.
+    pub reach: f32,
+}
+
+impl Default for QuerySettings {
+    fn default() -> QuerySettings {
+        QuerySettings {
+            cell_sigmas: 0.6,
+            boxes_until: 0.25,
+            cells_from: 0.375,
+            box_sigmas: 0.25,
+            max_cells: 32.0,
+            max_boxes: 1024.0,
+            reach: 3.0,
+        }
+    }
+}
+
+/// What a level is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Detail {
+    /// Boxes of this edge, in texels.
+    Boxes(f32),
+    /// Cells of a stored level.
+    Cells(usize),
+    /// The lobes of the last level, every place alike.
+    Whole,
+}
+
+/// Two neighbouring levels and the weight of the coarser.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lod {
+    /// The finer level.
+    pub finer: Detail,
+    /// The coarser level.
+    pub coarser: Detail,
+    /// Weight of the coarser; the finer has the rest.
+    pub fraction: f32,
+}
+
+/// A footprint on a map, and where what it sees goes.
+pub struct Query<'a, V: FnMut(&SeenLobe)> {
+    lobes: &'a BakedLobes,
+    frame: Frame,
+    roughness: f32,
+    visit: V,
+}
+
+impl<'a, V: FnMut(&SeenLobe)> Query<'a, V> {
+    /// A query that hands every lobe it sees to `visit`.
+    pub fn new(lobes: &'a BakedLobes, frame: Frame, roughness: f32, visit: V) -> Query<'a, V> {
+        Query { lobes, frame, roughness, visit }
+    }
+
+    /// Adds the lobes of cell (`cell[0]`, `cell[1]`) of a stored level, moved by `displacement` texels from where it lies in
+    /// the map.
+    pub fn add_cell(&mut self, level: usize, cell: [u32; 2], displacement: Vec2) {
+        let grid = &self.lobes.params.levels[level];
+        let corner = Vec2::new(cell[0] as f32, cell[1] as f32) * grid.cell_texels as f32 + displacement;
+        let per_cell = self.lobes.params.lobes_per_cell;
+        let first = grid.first_lobe + (cell[1] * grid.cells_x + cell[0]) * per_cell;
+        let scales = Scales::new(&self.lobes.params, grid);
+        for index in first..first + per_cell {
+            let lobe = self.lobes.lobe(index, &scales);
+            if lobe.weight > 0.0 {
+                let seen = eval::seen(&lobe, self.frame.mean - corner - lobe.position, &self.frame, self.roughness);
+                (self.visit)(&seen);
+            }
+        }
+    }
+
+    /// Adds the box of `edge` texels around `centre` in the map, moved by `displacement`.
+    pub fn add_box(&mut self, centre: Vec2, edge: f32, displacement: Vec2) {
+        let (normal, jacobian, twist) = self.lobes.surface_at(centre);
+        let lobe = eval::box_lobe(normal, jacobian, twist, Vec2::splat(edge));
+        let seen = eval::seen(&lobe, self.frame.mean - centre - displacement, &self.frame, self.roughness);
+        (self.visit)(&seen);
+    }
+
+    /// Adds the lobes of the last level, every place alike.
+    pub fn add_whole(&mut self) {
+        let top = &self.lobes.params.levels[self.lobes.params.levels.len() - 1];
+        let scales = Scales::new(&self.lobes.params, top);
+        for index in top.first_lobe..top.first_lobe + self.lobes.params.lobes_per_cell {
+            let lobe = self.lobes.lobe(index, &scales);
+            if lobe.weight > 0.0 {
+                (self.visit)(&eval::seen_whole(&lobe, self.roughness));
+            }
+        }
+    }
+
+    /// Adds what the repeated map shows of a level under the footprint. Returns the number of cells or boxes visited.
+    pub fn add_repeated(&mut self, detail: Detail, reach: f32) -> u32 {
+        let params = &self.lobes.params;
+        let (width, height) = (params.width as f32, params.height as f32);
+        let frame = self.frame;
+        let mut visited = 0;
+        match detail {
+            Detail::Whole => {
+                self.add_whole();
+                visited = 1;
+            }
+            Detail::Cells(level) => {
+                let grid = &params.levels[level];
+                let edge = grid.cell_texels as f32;
+                let top = frame.reach_y(reach);
+                for row in slots(frame.mean.y - top, frame.mean.y + top, height, edge, grid.cells_y) {
+                    let Some((x0, x1)) = span_x(&frame, reach, row.start, row.end) else { continue };
+                    for Slot { index, copy, .. } in slots(x0, x1, width, edge, grid.cells_x) {
+                        self.add_cell(level, [index, row.index], Vec2::new(copy * width, row.copy * height));
+                        visited += 1;
+                    }
+                }
+            }
+            Detail::Boxes(edge) => {
+                // Boxes of a bilinear map begin at texel centres, where its patches do.
+                let origin = if params.filter == Filter::Linear { 0.5 } else { 0.0 };
+                let top = frame.reach_y(reach);
+                let index = |x: f32| ((x - origin) / edge).floor() as i32;
+                for j in index(frame.mean.y - top)..=index(frame.mean.y + top) {
+                    let y = origin + (j as f32 + 0.5) * edge;
+                    let Some((x0, x1)) = span_x(&frame, reach, y - 0.5 * edge, y + 0.5 * edge) else { continue };
+                    let copy_y = (y / height).floor() * height;
+                    for i in index(x0)..=index(x1) {
+                        let x = origin + (i as f32 + 0.5) * edge;
+                        let copy = Vec2::new((x / width).floor() * width, copy_y);
+                        self.add_box(Vec2::new(x, y) - copy, edge, copy);
+                        visited += 1;
+                    }
+                }
+            }
+        }
+        visited
+    }
+}
+
+impl BakedLobes {
+    /// The two levels that serve a footprint, and how they are mixed.
+    pub fn lod(&self, frame: &Frame, settings: &QuerySettings) -> Lod {
+        let levels = self.params.levels.len();
+        let finest = self.params.levels[0].cell_texels as f32;
+        // Cells of edge c = σ / cell_sigmas that the footprint's ellipse touches: about π (r a + h c) (r b + h c) / c² with
+        // its half axes r a, r b and h c half a cell's mean width. Solved for the σ at which they are `max_cells`.
+        let (a, b, h) = (settings.reach * frame.major, settings.reach * frame.minor, 0.45);
+        let budget = settings.max_cells / std::f32::consts::PI - h * h;
+        let edge = (h * (a + b) + (h * h * (a + b) * (a + b) + 4.0 * budget * a * b).sqrt()) / (2.0 * budget);
+        let sigma = frame.minor.max(edge * settings.cell_sigmas);
+        let cells = 1.0 + libm::log2f(sigma / (finest * settings.cell_sigmas));
+        // Boxes end by the footprint's size, or where there would be more of them than allowed, be they whole texels.
+        let by_size = libm::log2f(sigma / (finest * settings.boxes_until))
+            / libm::log2f(settings.cells_from / settings.boxes_until);
+        let by_count = 1.0 + libm::log2f(std::f32::consts::PI * (a + h) * (b + h) / settings.max_boxes);
+        let boxes = by_size.max(by_count).clamp(0.0, 1.0);
+        let lambda = cells.clamp(boxes, (levels + 1) as f32);
+        let finer = (lambda.floor() as usize).min(levels);
+        let detail = |level: usize| match level {
+            0 => Detail::Boxes(self.box_edge(frame, settings)),
+            _ if level <= levels => Detail::Cells(level - 1),
+            _ => Detail::Whole,
+        };
+        let fraction = lambda - finer as f32;
+        // The finer of two stored levels serves alone for half the way: nearer to the map, and only one level is read.
+        let fraction = if finer == 0 { fraction } else { (2.0 * fraction - 1.0).max(0.0) };
+        Lod { finer: detail(finer), coarser: detail(finer + 1), fraction }
+    }
+
+    /// Edge of the boxes that a footprint is resolved in: a power of two, at most a texel.
+    fn box_edge(&self, frame: &Frame, settings: &QuerySettings) -> f32 {
+        // The seam of a clamped map cuts through whole-texel boxes.
+        let own_map = self.params.step_texels == 0;
+        let clamped = own_map && self.params.wrap == Wrap::Clamp && self.params.filter == Filter::Linear;
+        let mut edge = if clamped { 0.5 } else { 1.0 };
+        let (a, b) = (settings.reach * frame.major, settings.reach * frame.minor);
+        while edge > settings.box_sigmas * frame.minor && edge > 2.0 * eval::LEAST_SIGMA {
+            let half = 0.5 * edge;
+            if std::f32::consts::PI * (a + half) * (b + half) > settings.max_boxes * half * half {
+                break;
+            }
+            edge = half;
+        }
+        edge
+    }
+
+    /// P-NDF at the projected normal `s` of a footprint on the repeated map: density over the disk, 0 outside it.
+    pub fn p_ndf(&self, footprint: &Footprint, s: Vec2, roughness: f32, settings: &QuerySettings) -> f32 {
+        if s.length_squared() > 1.0 {
+            return 0.0;
+        }
+        let frame = self.frame(footprint);
+        let lod = self.lod(&frame, settings);
+        let mut density = 0.0;
+        for (detail, weight) in [(lod.finer, 1.0 - lod.fraction), (lod.coarser, lod.fraction)] {
+            if weight > 0.0 {
+                let (mut sum, mut share) = (0.0, 0.0);
+                let mut add = |seen: &SeenLobe| {
+                    sum += seen.density(s);
+                    share += seen.share;
+                };
+                let mut query = Query::new(self, frame, roughness, &mut add);
+                query.add_repeated(detail, settings.reach);
+                if share < LEAST_SHARE {
+                    // Nothing near enough for f32 to tell: the whole map is the best that is known.
+                    (sum, share) = (0.0, 0.0);
+                    let mut add = |seen: &SeenLobe| {
+                        sum += seen.density(s);
+                        share += seen.share;
+                    };
+                    Query::new(self, frame, roughness, &mut add).add_whole();
+                }
+                density += weight * sum / share;
+            }
+        }
+        density
+    }
+
+    /// The lobes that a footprint sees on the repeated map, shares summing to 1.
+    pub fn gather(&self, footprint: &Footprint, roughness: f32, settings: &QuerySettings) -> Gathered {
+        let frame = self.frame(footprint);
+        let lod = self.lod(&frame, settings);
+        let mut gathered = Gathered::default();
+        for (detail, weight) in [(lod.finer, 1.0 - lod.fraction), (lod.coarser, lod.fraction)] {
+            if weight > 0.0 {
+                self.gather_level(&frame, detail, weight, roughness, settings.reach, &mut gathered);
+            }
+        }
+        gathered
+    }
+
+    /// The lobes that a footprint sees at one level.
+    pub fn gather_detail(&self, footprint: &Footprint, detail: Detail, roughness: f32, reach: f32) -> Gathered {
+        let mut gathered = Gathered::default();
+        self.gather_level(&self.frame(footprint), detail, 1.0, roughness, reach, &mut gathered);
+        gathered
+    }
+
+    fn gather_level(
+        &self,
+        frame: &Frame,
+        detail: Detail,
+        weight: f32,
+        roughness: f32,
+        reach: f32,
+        into: &mut Gathered,
+    ) {
+        let first = into.lobes.len();
+        let add = |list: &mut Vec<SeenLobe>, detail: Detail| {
+            let mut push = |seen: &SeenLobe| list.push(*seen);
+            Query::new(self, *frame, roughness, &mut push).add_repeated(detail, reach)
+        };
+        into.cells += add(&mut into.lobes, detail);
+        let share = |list: &[SeenLobe]| list.iter().map(|seen| seen.share).sum::<f32>();
+        if share(&into.lobes[first..]) < LEAST_SHARE {
+            into.lobes.truncate(first);
+            add(&mut into.lobes, Detail::Whole);
+        }
+        let scale = weight / share(&into.lobes[first..]);
+        into.lobes[first..].iter_mut().for_each(|seen| seen.share *= scale);
+    }
+
+    /// Axes of a footprint, its centre moved by whole periods into the map, where positions have the most digits.
+    fn frame(&self, footprint: &Footprint) -> Frame {
+        let size = DVec2::new(self.params.width as f64, self.params.height as f64);
+        let mean = footprint.mean - (footprint.mean / size).floor() * size;
+        Frame::new(&Footprint { mean, ..*footprint })
+    }
+
+    /// Projected normal, Jacobian ∂s/∂u and twist ∂²s/∂u∂v at a place in the map.
+    fn surface_at(&self, u: Vec2) -> (Vec2, Mat2, Vec2) {
+        bilinear(self.params.filter, u, |i, j| self.texel(i, j))
+    }
+}
+
+/// Projected normal, Jacobian ∂s/∂u and twist ∂²s/∂u∂v of filtered texels at a place.
+pub(crate) fn bilinear(filter: Filter, u: Vec2, texel: impl Fn(i32, i32) -> Vec2) -> (Vec2, Mat2, Vec2) {
+    if filter == Filter::Nearest {
+        return (texel(u.x.floor() as i32, u.y.floor() as i32), Mat2::ZERO, Vec2::ZERO);
+    }
+    let p = u - 0.5;
+    let cell = p.floor();
+    let f = p - cell;
+    let (i, j) = (cell.x as i32, cell.y as i32);
+    let (s00, s10, s01, s11) = (texel(i, j), texel(i + 1, j), texel(i, j + 1), texel(i + 1, j + 1));
+    let top = s00 + (s10 - s00) * f.x;
+    let bottom = s01 + (s11 - s01) * f.x;
+    let twist = s11 - s10 - s01 + s00;
+    let along = s10 - s00 + twist * f.y;
+    (top + (bottom - top) * f.y, Mat2::from_cols(along, bottom - top), twist)
+}
+
+/// Sum of shares below which f32 cannot tell what a footprint sees.
+pub(crate) const LEAST_SHARE: f32 = 1e-30;
+
+/// What a footprint sees.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Gathered {
+    /// Lobes; shares sum to 1.
+    pub lobes: Vec<SeenLobe>,
+    /// Cells and boxes visited.
+    pub cells: u32,
+}
+
+impl Gathered {
+    /// Density at `s`, 0 outside the disk.
+    pub fn density(&self, s: Vec2) -> f32 {
+        if s.length_squared() > 1.0 { 0.0 } else { self.lobes.iter().map(|seen| seen.density(s)).sum() }
+    }
+}
