@@ -49,7 +49,8 @@ PARAMETERS = {
         roughness=("list", "f64"), radiance_scale="f64", levels=("list", "f64"),
         level_choice=("enum", ["Optimal", "LogUniform"]), coloured="bool", albedo_size="u32", source_width="u32",
         source_height="u32", negative_pixels="u64", mean_radiance=("array", 3, "f64"), max_error="f64",
-        measured=dict(mips=("list", dict(rmse="f64", worst="f64")), texels="u32", energy="f64", second_moment="f64")),
+        measured=dict(mips=("list", dict(rmse="f64", worst="f64")), texels="u32", energy="f64", second_moment="f64",
+                      rounding=("list", "f64"))),
     "ALPP": dict(
         width="u32", height="u32", wrap=WRAP, base_roughness="f32", storage=("enum", ["F16", "Snorm8"]),
         anisotropic="bool", measured=dict(normal_angle="f64", roughness="f64", table_mean="f64")),
