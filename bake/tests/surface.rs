@@ -173,7 +173,8 @@ fn any_footprint_gets_a_normalised_answer_for_bounded_work() {
                             let sum: f32 = seen.lobes.iter().map(|lobe| lobe.share).sum();
                             assert!((sum - 1.0).abs() < 1e-3, "{sigma} {anisotropy} {sum}");
                             assert!(seen.lobes.iter().all(|lobe| lobe.share >= 0.0 && lobe.peak.is_finite()));
-                            assert!(seen.lobes.len() < 16_000, "{sigma} {anisotropy}: {}", seen.lobes.len());
+                            // Long footprints on a sample that holds few cells of 64 texels read smaller ones.
+                            assert!(seen.lobes.len() < 32_000, "{sigma} {anisotropy}: {}", seen.lobes.len());
                         }
                     }
                 }

@@ -41,7 +41,7 @@ impl Default for SurfaceSettings {
         SurfaceSettings {
             query: QuerySettings::default(),
             owned_from: 32,
-            owned_sigma: 10.0,
+            owned_sigma: 14.0,
             box_range: 2.0,
             halves_until: 6.0,
         }
