@@ -35,6 +35,7 @@ report MAPS="../shared/data/tiny/brushed_16x16.png":
     cargo run --release --example glint_report -- "${GLINT_DATA:-../shared/data}" > docs/environment-glints.md
     cargo run --release --example area_light_report -- "${GLINT_DATA:-../shared/data}" --svg docs/area-light-report.svg > docs/area-light-report.md
     cargo run --release --example lobes_report -- "${GLINT_DATA:-../shared/data}" --svg docs/lobes-report.svg > docs/lobes-report.md
+    cargo run --release --example surface_report -- "${GLINT_DATA:-../shared/data}" > docs/surface-report.md
 
 # Fit the LTC tables of area lights anew; they come with the program, and a test checks that this gives the same bytes.
 ltc-tables:

@@ -30,7 +30,7 @@ fn seams_are_no_worse_than_the_inside_of_patches() {
         let lobes = LobesOptions { footprints: 0, ..LobesOptions::default() };
         let surface = bake(&sample, &lobes, &options, &Silent).unwrap();
         assert!(surface.gpu_bytes() < 800_000, "{name}: {}", surface.gpu_bytes());
-        let exact = Exact { surface: &surface, sample: &sample, roughness: lobes.roughness };
+        let exact = Exact { surface: &surface, sample: &sample, roughness: lobes.roughness, refinement: 1.0 };
         for sigma in [1.0, 2.0, 4.0, 8.0] {
             let mean = |inside| {
                 let places = seam_footprints(&surface, sigma, 16, 7, inside);

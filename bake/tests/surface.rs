@@ -92,7 +92,7 @@ fn whole_blocks_cells_of_every_level_and_boxes_agree_where_footprints_are_large(
     let sample = waves(160, 160, Wrap::Clamp);
     for target in [GRID, TILES] {
         let surface = baked(&sample, target);
-        let exact = Exact { surface: &surface, sample: &sample, roughness: 0.02 };
+        let exact = Exact { surface: &surface, sample: &sample, roughness: 0.02, refinement: 1.0 };
         let levels = surface.lobes.params.levels.len();
         let mut ways = vec![Measured::At(Detail::Boxes(1.0), SurfaceSettings::default())];
         ways.extend((0..levels).map(|level| Measured::At(Detail::Cells(level), SurfaceSettings::default())));
@@ -111,7 +111,7 @@ fn the_finest_level_is_the_assembled_map() {
         let sample = waves(128, 128, wrap);
         for target in [GRID, TILES] {
             let surface = bake(&sample, &LobesOptions { filter, ..lobes() }, &synthesis(target), &Silent).unwrap();
-            let exact = Exact { surface: &surface, sample: &sample, roughness: 0.02 };
+            let exact = Exact { surface: &surface, sample: &sample, roughness: 0.02, refinement: 1.0 };
             for sigma in [0.5, 1.0, 2.0] {
                 let places = seam_footprints(&surface, sigma, 8, 3, false);
                 let errors = exact.errors(&[Measured::Chosen(SurfaceSettings::default())], &places, 4);
@@ -126,7 +126,7 @@ fn the_finest_level_is_the_assembled_map() {
 fn seams_are_no_worse_than_the_inside_of_patches() {
     let sample = waves(192, 192, Wrap::Clamp);
     let surface = baked(&sample, GRID);
-    let exact = Exact { surface: &surface, sample: &sample, roughness: 0.02 };
+    let exact = Exact { surface: &surface, sample: &sample, roughness: 0.02, refinement: 1.0 };
     for sigma in [1.0, 2.0, 4.0, 8.0] {
         let mean = |inside| {
             let places = seam_footprints(&surface, sigma, 12, 7, inside);

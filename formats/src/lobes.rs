@@ -172,6 +172,8 @@ impl LobesParams {
     /// Columns and rows of cells of `cell_texels`, of levels over the map. Side by side: those that cover it. In steps: all
     /// that lie in a clamped map, which must hold one; those of a repeated one go on across its edge.
     pub fn grid(&self, cell_texels: u32) -> (u32, u32) {
+        // A cell of no texels, which no sound pack has, counts as one.
+        let cell_texels = cell_texels.max(1);
         let step = self.step(cell_texels);
         let count = |side: u32| match self.wrap {
             _ if self.step_texels == 0 => side.div_ceil(cell_texels),

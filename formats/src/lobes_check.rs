@@ -77,8 +77,8 @@ fn check_parameters(params: &LobesParams) -> Result<(), String> {
         }
     }
     let step = params.step_texels;
-    let whole_steps =
-        params.wrap == Wrap::Clamp || (params.width % step.max(1) == 0 && params.height % step.max(1) == 0);
+    let in_steps = |side: u32| side.is_multiple_of(step.max(1));
+    let whole_steps = params.wrap == Wrap::Clamp || (in_steps(params.width) && in_steps(params.height));
     if step != 0 && !(step.is_power_of_two() && whole_steps) {
         return Err(format!(
             "expected cells in steps of a power of two that a repeated map is a multiple of, found {step}"

@@ -582,7 +582,8 @@ fn lobes_and_synthesis_that_do_not_fit_are_found() {
     for edit in levels {
         assert_eq!(codes(&surface_with(edit)), [IssueCode::LobesLevels]);
     }
-    assert_eq!(codes(&surface_with(|lobes, _| lobes.step_texels = 3)), [IssueCode::LobesParameters]);
+    let odd_step = codes(&surface_with(|lobes, _| lobes.step_texels = 3));
+    assert!(odd_step.contains(&IssueCode::LobesParameters), "{odd_step:?}");
     let alone = without(surface_sections(&surface_lobes_params(), &surface_synthesis_params()), synthesis::PARAMS);
     assert!(codes(&pack(alone)).contains(&IssueCode::MissingSection));
     let one = LobesParams { levels: vec![surface_lobes_params().levels[1]], ..surface_lobes_params() };

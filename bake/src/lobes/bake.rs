@@ -36,7 +36,7 @@ const MEASURED_RANGE: f64 = 100.0;
 
 /// Pieces of the reference that the bake measures against are this much coarser than they could be, which changes E₁ by less
 /// than half a point on steep maps.
-const MEASURED_REFINEMENT: f64 = 0.6;
+pub(crate) const MEASURED_REFINEMENT: f64 = 0.6;
 
 /// MIP-mapped lobes of one map, ready for a pack.
 #[derive(Clone, Debug, PartialEq)]
@@ -278,14 +278,12 @@ fn measure(map: &NormalMap, options: &LobesOptions, baked: &mut BakedLobes, prog
     let extent = DVec2::new(map.width as f64, map.height as f64);
     let sizes = MEASURED_SIGMAS.iter().filter(|sigma| **sigma <= 0.25 * extent.max_element().max(8.0));
     progress.begin("error", sizes.clone().count() as u64);
-    let range = Vec2::from(baked.params.normal_extent).max_element() as f64;
-    let roughness = options.roughness.max(range / MEASURED_RANGE);
+    let roughness = measured_roughness(baked, options);
     baked.params.measured_roughness = roughness as f32;
     let reference = Reference::new(map, options.filter, roughness).refined(MEASURED_REFINEMENT);
     let mut rows = Vec::new();
     for &sigma in sizes {
-        // Large footprints differ less from place to place, and cost more.
-        let count = if sigma > LARGE_SIGMA { options.footprints.div_ceil(2) } else { options.footprints };
+        let count = measured_footprints(sigma, options);
         let footprints = sweep::footprints(sigma, 1.0, extent, count, SEED);
         let chosen = [(&*baked, Measured::Chosen(QuerySettings::default()))];
         let errors = quality::footprint_errors(&reference, &chosen, &footprints, 3 * quality::STRIDE);
@@ -298,4 +296,15 @@ fn measure(map: &NormalMap, options: &LobesOptions, baked: &mut BakedLobes, prog
     }
     progress.end();
     baked.params.measured = rows;
+}
+
+/// Roughness that errors are measured at: the bake's own, or what keeps the grid of normals small.
+pub(crate) fn measured_roughness(baked: &BakedLobes, options: &LobesOptions) -> f64 {
+    let range = Vec2::from(baked.params.normal_extent).max_element() as f64;
+    options.roughness.max(range / MEASURED_RANGE)
+}
+
+/// Footprints of a size that errors are measured over. Large ones differ less from place to place, and cost more.
+pub(crate) fn measured_footprints(sigma: f64, options: &LobesOptions) -> u32 {
+    if sigma > LARGE_SIGMA { options.footprints.div_ceil(2) } else { options.footprints }
 }

@@ -40,7 +40,9 @@ pub fn bake(
     baked.params.step_texels = synthesis.params.alignment;
     build_levels(&sample, lobes, &synthesis, &mut baked, progress);
     let mut surface = Surface { lobes: baked, synthesis };
-    surface.lobes.params.measured = quality::measure(&surface, &sample, lobes, progress);
+    let roughness = levels::measured_roughness(&surface.lobes, lobes);
+    surface.lobes.params.measured_roughness = roughness as f32;
+    surface.lobes.params.measured = quality::measure(&surface, &sample, roughness, lobes, progress);
     Ok(surface)
 }
 

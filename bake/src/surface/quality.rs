@@ -3,7 +3,7 @@
 use super::{Surface, SurfaceSettings};
 use crate::footprint::Footprint;
 use crate::lobes::LobesOptions;
-use crate::lobes::bake::MEASURED_SIGMAS;
+use crate::lobes::bake::{MEASURED_REFINEMENT, MEASURED_SIGMAS, measured_footprints};
 use crate::lobes::quality::{FootprintErrors, STRIDE, difference};
 use crate::lobes::query::{Detail, Gathered};
 use crate::lobes::reference::Reference;
@@ -49,6 +49,8 @@ pub struct Exact<'a> {
     pub sample: &'a NormalMap,
     /// Intrinsic roughness σ_r.
     pub roughness: f64,
+    /// Pieces of the reference, see [`Reference::refined`]: 1 is as fine as it is by itself.
+    pub refinement: f64,
 }
 
 impl Exact<'_> {
@@ -69,7 +71,8 @@ impl Exact<'_> {
             .par_iter()
             .filter_map(|footprint| {
                 let (map, local) = self.piece(footprint)?;
-                let exact = Reference::new(&map, self.filter(), self.roughness).ndf(&local, stride);
+                let reference = Reference::new(&map, self.filter(), self.roughness).refined(self.refinement);
+                let exact = reference.ndf(&local, stride);
                 let one = |way: &Measured| {
                     let seen = way.seen(self.surface, footprint, self.roughness);
                     let (e1, energy) = difference(&exact, &seen);
@@ -90,6 +93,7 @@ impl Exact<'_> {
 pub(super) fn measure(
     surface: &Surface,
     sample: &NormalMap,
+    roughness: f64,
     options: &LobesOptions,
     progress: &dyn Progress,
 ) -> Vec<FootprintError> {
@@ -103,11 +107,11 @@ pub(super) fn measure(
         Layout::CornerTiles { .. } => (MEASURED_PATCHES, MEASURED_PATCHES),
     };
     let extent = DVec2::new(f64::from(columns), f64::from(rows)) * f64::from(params.patch);
-    let exact = Exact { surface, sample, roughness: options.roughness };
+    let exact = Exact { surface, sample, roughness, refinement: MEASURED_REFINEMENT };
     progress.begin("error", MEASURED_SIGMAS.len() as u64);
     let row = |&sigma: &f64| {
-        let footprints = sweep::footprints(sigma, 1.0, extent, options.footprints, SEED);
-        let e1 = exact.errors(&[Measured::Chosen(SurfaceSettings::default())], &footprints, 2 * STRIDE)[0].e1;
+        let footprints = sweep::footprints(sigma, 1.0, extent, measured_footprints(sigma, options), SEED);
+        let e1 = exact.errors(&[Measured::Chosen(SurfaceSettings::default())], &footprints, 3 * STRIDE)[0].e1;
         progress.advance(1);
         FootprintError { sigma_texels: sigma as f32, mean: e1.mean as f32, worst: e1.worst as f32 }
     };
