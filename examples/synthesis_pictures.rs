@@ -1,12 +1,13 @@
 //! A synthesised normal map as pictures, and what it measures, as a row of a markdown table on stdout.
 //!
 //! `synthesis_pictures MAP FOLDER [KEY=VALUE]…` writes `FOLDER/NAME-all.png`, the surface made smaller to 1024 pixels, and
-//! `FOLDER/NAME-part.png`, 512 texels at full size; with `-` for a folder nothing. Keys: crop (256; 0 is the whole map),
+//! `FOLDER/NAME-part.png`, some texels at full size; with `-` for a folder nothing. Keys: crop (256; 0 is the whole map),
 //! x, y, repeat (0: the crop does not), size (4096), colours (0; else corner tiles), variants, patch, overlap, alignment,
-//! tolerance, candidates, alpha, seed, name.
+//! tolerance, candidates, alpha, seed, part (512), name. MAP may be `synthetic:leather`, or brushed, scratches, flakes: a map of 512²
+//! texels made by formula.
 
 use glint_bake::canvas::Canvas;
-use glint_bake::input::{Crop, InputOptions, load_normal_map};
+use glint_bake::input::{Crop, InputOptions, load_normal_map, synthetic};
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::synthesis::measure::{repetition, whole_share};
@@ -15,9 +16,8 @@ use glint_formats::ndf_maps::Wrap;
 use std::path::Path;
 use std::time::Instant;
 
-/// Edge of the pictures in pixels.
+/// Edge of the overview in pixels.
 const OVERVIEW: u32 = 1024;
-const PART: u32 = 512;
 /// Where the part begins, away from multiples of patches.
 const PART_AT: (i32, i32) = (700, 900);
 /// Root mean square of the projected normals in a picture: weaker ones are made stronger, to be seen.
@@ -29,10 +29,28 @@ fn main() {
         eprintln!("usage: synthesis_pictures MAP FOLDER [KEY=VALUE]...");
         std::process::exit(2);
     };
-    if let Err(why) = run(Path::new(map), folder, &Settings(settings)) {
+    let done = match map.strip_prefix("synthetic:") {
+        Some(kind) => made(kind).and_then(|file| run(file.path(), folder, &Settings(settings))),
+        None => run(Path::new(map), folder, &Settings(settings)),
+    };
+    if let Err(why) = done {
         eprintln!("{why}");
         std::process::exit(1);
     }
+}
+
+/// A map made by formula, as a file that is gone when it is dropped.
+fn made(kind: &str) -> Result<tempfile::NamedTempFile, String> {
+    let make = match kind {
+        "brushed" => synthetic::brushed,
+        "scratches" => synthetic::scratches,
+        "flakes" => synthetic::flakes,
+        "leather" => synthetic::leather,
+        _ => return Err(format!("synthetic:{kind}: expected brushed, scratches, flakes or leather")),
+    };
+    let file = tempfile::Builder::new().prefix(kind).suffix(".png").tempfile().map_err(|e| e.to_string())?;
+    make(512, 512, 1).save(file.path()).map_err(|e| e.to_string())?;
+    Ok(file)
 }
 
 /// The arguments KEY=VALUE.
@@ -84,7 +102,7 @@ fn run(path: &Path, folder: &str, settings: &Settings<'_>) -> Result<(), String>
         };
         let shrink = size.div_ceil(OVERVIEW);
         write("all", picture(&surface, &sample, (0, 0), size, shrink)?)?;
-        write("part", picture(&surface, &sample, PART_AT, PART, 1)?)?;
+        write("part", picture(&surface, &sample, PART_AT, settings.number("part", 512)?, 1)?)?;
     }
     Ok(())
 }
