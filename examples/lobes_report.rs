@@ -1,7 +1,8 @@
 //! MIP-mapped lobes: speed against error, as markdown on stdout; every number is measured in the run.
 //!
-//! `lobes_report DATA [--svg FILE] [--footprints N]` reads the real maps in `DATA/normals`, prints the tables and draws error
-//! over footprint size. `just report` runs it.
+//! `lobes_report DATA [--svg FILE] [--footprints N] [--part NAME]…` reads the real maps in `DATA/normals`, prints the tables
+//! and draws error over footprint size. Parts are footprints, settings, extremes and sizes; all when none is named.
+//! `just report` runs it.
 
 use glam::{DVec2, Vec2};
 use glint_bake::input::{Crop, InputOptions, load_normal_map};
@@ -36,20 +37,38 @@ const SEED: u64 = 5;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let (mut data, mut svg, mut footprints) = (None, None, 16);
+    let (mut data, mut svg, mut footprints, mut parts) = (None, None, 16, Vec::new());
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
         match argument.as_str() {
             "--svg" => svg = rest.next().cloned(),
             "--footprints" => footprints = rest.next().and_then(|n| n.parse().ok()).unwrap_or(footprints),
+            "--part" => parts.extend(rest.next().cloned()),
             _ => data = Some(argument.clone()),
         }
     }
     let Some(data) = data else {
-        eprintln!("usage: lobes_report DATA [--svg FILE] [--footprints N]");
+        eprintln!("usage: lobes_report DATA [--svg FILE] [--footprints N] [--part NAME]...");
         std::process::exit(2);
     };
+    let wanted = |part: &str| parts.is_empty() || parts.iter().any(|name| name == part);
     let folder = Path::new(&data).join("normals");
+    if wanted("footprints") {
+        footprint_tables(&folder, footprints, svg);
+    }
+    if wanted("settings") {
+        settings(&folder, (footprints / 4).max(2));
+    }
+    if wanted("extremes") {
+        extremes(&folder, (footprints / 4).max(2));
+    }
+    if wanted("sizes") {
+        sizes(&folder);
+    }
+}
+
+/// The head of the report, error by footprint on every map, and the plot of it.
+fn footprint_tables(folder: &Path, footprints: u32, svg: Option<String>) {
     println!("# MIP-mapped lobes: speed against error\n");
     println!("Written by `just report`; do not edit. The plot is [lobes-report.svg](lobes-report.svg).\n");
     println!(
@@ -61,7 +80,7 @@ fn main() {
     let all: Vec<Table> = MAPS
         .iter()
         .map(|map| {
-            let table = by_footprint(&folder, map, footprints);
+            let table = by_footprint(folder, map, footprints);
             print_table(&table);
             table
         })
@@ -69,9 +88,6 @@ fn main() {
     if let Some(file) = svg {
         std::fs::write(file, plot(&all)).expect("writing the plot");
     }
-    settings(&folder, (footprints / 4).max(2));
-    extremes(&folder, (footprints / 4).max(2));
-    sizes(&folder);
 }
 
 fn load(folder: &Path, file: &str, edge: u32) -> NormalMap {

@@ -1,32 +1,26 @@
 //! `glint-bake lobes --synthesize`: what it writes, says, refuses, and leaves alone; what `glint-info` says of it.
 
-use crate::support::{bake, info, json};
+use crate::support::Case;
 use glint_bake::input::synthetic;
-use std::fs;
-use std::path::Path;
 
-const DEFAULT: [&str; 8] = ["lobes", "hide.png", "-o", "out.glintpack", "--synthesize", "200x100", "--patch", "32"];
-
-fn folder() -> tempfile::TempDir {
+fn case_of(args: &'static [&'static str]) -> Case {
     let folder = tempfile::tempdir().unwrap();
     synthetic::scratches(64, 64, 1).save(folder.path().join("hide.png")).unwrap();
-    folder
+    Case { folder, args }
 }
 
-fn names_in(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> =
-        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
+/// A surface of 200 × 100 texels.
+fn case() -> Case {
+    case_of(&["lobes", "hide.png", "-o", "out.glintpack", "--synthesize", "200x100", "--patch", "32"])
 }
 
 #[test]
 fn a_surface_becomes_a_pack_that_verifies_and_is_described() {
-    let folder = folder();
-    let done = bake(folder.path(), &[&DEFAULT[..], &["--write-normal-map", "all.png"]].concat()).ok();
+    let case = case();
+    let done = case.bake(&["--write-normal-map", "all.png"]).ok();
     assert!(done.stderr.contains("hide: surface 200 × 100 texels, lookup"), "{}", done.stderr);
-    assert_eq!(info(folder.path(), &["out.glintpack", "--verify"]).ok().stdout, "out.glintpack: intact\n");
-    let report = json(&info(folder.path(), &["out.glintpack", "--json"]).ok().stdout);
+    case.verify();
+    let report = case.report();
     assert_eq!(report["lobes"], serde_json::json!([]));
     let surface = &report["surfaces"][0];
     assert_eq!((&surface["name"], &surface["patches"], &surface["patch"]), (&"hide".into(), &28.into(), &32.into()));
@@ -35,54 +29,45 @@ fn a_surface_becomes_a_pack_that_verifies_and_is_described() {
     assert_eq!(surface["sample"]["lobe_bytes"], (64 + 16 + 16 + 1) * 32 * 16);
     let options = report["provenance"][0]["options"].as_array().unwrap();
     assert!(options.contains(&serde_json::json!(["synthesize", "200x100"])), "{options:?}");
-    let text = info(folder.path(), &["out.glintpack"]).ok().stdout;
+    let text = case.info(&[]).ok().stdout;
     for part in ["surface \"hide\"", "200 × 100 texels, patches of 32 texels that overlap by 8", "28 patches"] {
         assert!(text.contains(part), "{part} is missing from:\n{text}");
     }
-    let map = image::open(folder.path().join("all.png")).unwrap();
+    let map = image::open(case.path("all.png")).unwrap();
     assert_eq!((map.width(), map.height(), map.color()), (200, 100, image::ColorType::Rgb8));
     // Every texel of it is one of the map's, to rounding.
     let known: std::collections::BTreeSet<[u8; 3]> =
-        image::open(folder.path().join("hide.png")).unwrap().to_rgb8().pixels().map(|p| p.0).collect();
+        image::open(case.path("hide.png")).unwrap().to_rgb8().pixels().map(|p| p.0).collect();
     let near = |p: [u8; 3]| known.iter().any(|k| (0..3).all(|c| k[c].abs_diff(p[c]) <= 1));
     assert!(map.to_rgb8().pixels().step_by(97).all(|p| near(p.0)));
 }
 
 #[test]
 fn the_same_flags_give_the_same_bytes_on_any_number_of_threads() {
-    let folder = folder();
-    let pack_of = |flags: &[&str]| {
-        bake(folder.path(), &[&DEFAULT[..], flags].concat()).ok();
-        fs::read(folder.path().join("out.glintpack")).unwrap()
-    };
-    let one = pack_of(&["-j", "1"]);
-    assert!(one == pack_of(&["-j", "7"]));
-    assert!(one != pack_of(&["--seed", "9"]) && one != pack_of(&["--overlap", "4"]));
+    let case = case();
+    let one = case.same_on_any_threads();
+    assert!(one != case.pack(&["--seed", "9"]) && one != case.pack(&["--overlap", "4"]));
 }
 
 #[test]
 fn every_flag_is_taken() {
-    let folder = folder();
-    let unbounded = ["lobes", "hide.png", "-o", "out.glintpack", "--synthesize", "unbounded", "--patch", "48"];
+    let case = case_of(&["lobes", "hide.png", "-o", "out.glintpack", "--synthesize", "unbounded", "--patch", "48"]);
     let flags = ["--overlap", "5", "--alpha", "0.5", "--error-tolerance", "1", "--colours", "2", "--variants", "1"];
     let more = ["--write-normal-map", "part.png", "--normal-map-size", "90x70", "--cell", "16", "--k", "8"];
-    bake(folder.path(), &[&unbounded[..], &flags, &more].concat()).ok();
-    let report = json(&info(folder.path(), &["out.glintpack", "--json"]).ok().stdout);
+    case.bake(&[&flags[..], &more].concat()).ok();
+    let report = case.report();
     let surface = &report["surfaces"][0];
     assert_eq!(surface["tiles"], serde_json::json!([2, 1]));
     assert_eq!((&surface["size"], &surface["overlap"]), (&serde_json::Value::Null, &5.into()));
     assert_eq!(surface["sample"]["cell_texels"], 16);
-    assert_eq!(image::image_dimensions(folder.path().join("part.png")).unwrap(), (90, 70));
+    assert_eq!(image::image_dimensions(case.path("part.png")).unwrap(), (90, 70));
 }
 
 #[test]
 fn what_cannot_work_is_refused_by_the_name_of_its_flag() {
-    let folder = folder();
+    let case = case();
     for (flags, code, named) in [
-        (&["--patch", "40"][..], 2, "--patch"),
-        (&["--patch", "0"], 2, "--patch"),
-        (&["--patch", "128"], 4, "--patch"),
-        (&["--overlap", "17"], 2, "--overlap"),
+        (&["--overlap", "17"][..], 2, "--overlap"),
         (&["--alpha", "1.5"], 2, "--alpha"),
         (&["--error-tolerance=-1"], 2, "--error-tolerance"),
         (&["--colours", "2"], 2, "--colours"),
@@ -94,32 +79,30 @@ fn what_cannot_work_is_refused_by_the_name_of_its_flag() {
         (&["--write-normal-map", "hide.png"], 2, "hide.png"),
         (&["--write-normal-map", "none/all.png"], 3, "none"),
     ] {
-        let arguments: Vec<&str> =
-            DEFAULT[..6].iter().chain(if flags[0] == "--patch" { &[][..] } else { &DEFAULT[6..] }).copied().collect();
-        let refused = bake(folder.path(), &[&arguments[..], flags].concat());
-        assert_eq!(refused.code, code, "{flags:?}: {}", refused.stderr);
-        assert!(refused.stderr.contains(named), "{flags:?}: {}", refused.stderr);
+        case.refuses(flags, code, named);
     }
-    let base = ["lobes", "hide.png", "-o", "out.glintpack"];
-    for (flags, named) in [
-        (&["--synthesize", "9"][..], "--synthesize"),
-        (&["--synthesize", "0x9"], "--synthesize"),
-        (&["--synthesize", "1000000x1000000"], "--synthesize"),
-        (&["--patch", "32"], "--synthesize"),
-        (&["--synthesize", "unbounded", "--patch", "48", "--write-normal-map", "a.png"], "--normal-map-size"),
+    assert_eq!(case.names(), ["hide.png"]);
+    let base = case_of(&["lobes", "hide.png", "-o", "out.glintpack"]);
+    for (flags, code, named) in [
+        (&["--synthesize", "9"][..], 2, "--synthesize"),
+        (&["--synthesize", "0x9"], 2, "--synthesize"),
+        (&["--synthesize", "1000000x1000000"], 6, "--synthesize"),
+        (&["--patch", "32"], 2, "--synthesize"),
+        (&["--synthesize", "200x100", "--patch", "40"], 2, "--patch"),
+        (&["--synthesize", "200x100", "--patch", "0"], 2, "--patch"),
+        (&["--synthesize", "200x100", "--patch", "128"], 4, "--patch"),
+        (&["--synthesize", "unbounded", "--patch", "48", "--write-normal-map", "a.png"], 2, "--normal-map-size"),
     ] {
-        let refused = bake(folder.path(), &[&base[..], flags].concat());
-        assert!([2, 6].contains(&refused.code), "{flags:?}: {} {}", refused.code, refused.stderr);
-        assert!(refused.stderr.contains(named), "{flags:?}: {}", refused.stderr);
+        base.refuses(flags, code, named);
     }
-    assert_eq!(names_in(folder.path()), ["hide.png"]);
+    assert_eq!(base.names(), ["hide.png"]);
 }
 
 #[test]
 fn a_dry_run_checks_all_and_writes_nothing() {
-    let folder = folder();
-    let done = bake(folder.path(), &[&DEFAULT[..], &["-n", "--write-normal-map", "all.png"]].concat()).ok();
+    let case = case();
+    let done = case.bake(&["-n", "--write-normal-map", "all.png"]).ok();
     assert!(done.stderr.contains("surface of 200 × 100 texels"), "{}", done.stderr);
     assert!(done.stderr.contains("dry run, nothing was written"), "{}", done.stderr);
-    assert_eq!(names_in(folder.path()), ["hide.png"]);
+    assert_eq!(case.names(), ["hide.png"]);
 }
