@@ -27,6 +27,9 @@ fn a_map_becomes_a_pack_that_verifies_and_is_described() {
     assert_eq!(report["provenance"][0]["method"], "lobes");
     assert_eq!(report["provenance"][0]["options"][0], serde_json::json!(["roughness", "0.02"]));
 
+    case.info(&["--plot", "plots", "-q"]).ok();
+    assert_eq!(image::image_dimensions(case.path("plots/0-scratches-ndf.png")).unwrap(), (512, 512));
+
     let text = case.info(&[]).ok().stdout;
     for part in
         ["LOBE \"scratches\"", "96 × 16 bytes", "32 a cell, 2 levels from 8 texels on", "runnalls from 4 a texel"]

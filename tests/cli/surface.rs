@@ -43,6 +43,21 @@ fn a_surface_becomes_a_pack_that_verifies_and_is_described() {
 }
 
 #[test]
+fn patches_and_the_whole_ndf_are_plotted() {
+    let case = case();
+    case.bake(&[]).ok();
+    case.info(&["--plot", "plots", "-q"]).ok();
+    let picture = |name: &str| image::open(case.path("plots").join(name)).unwrap().to_rgb8();
+    let (patches, ndf) = (picture("0-hide-patches.png"), picture("0-hide-ndf.png"));
+    assert_eq!((patches.dimensions(), ndf.dimensions()), ((512, 512), (512, 512)));
+    // 7 × 4 patches.
+    let colours: std::collections::BTreeSet<[u8; 3]> = patches.pixels().map(|pixel| pixel.0).collect();
+    assert!((20..=28).contains(&colours.len()), "{}", colours.len());
+    // Most facets of a scratched plate look up, and none lies outside the disk.
+    assert!(ndf.get_pixel(256, 256) != ndf.get_pixel(256, 20) && ndf.get_pixel(2, 2).0 == [0; 3]);
+}
+
+#[test]
 fn the_same_flags_give_the_same_bytes_on_any_number_of_threads() {
     let case = case();
     let one = case.same_on_any_threads();

@@ -117,7 +117,7 @@ pub fn owners(placement: &BakedPlacement) -> Option<Canvas> {
     Some(canvas)
 }
 
-fn colour_wheel(hue: f32) -> [u8; 3] {
+pub(super) fn colour_wheel(hue: f32) -> [u8; 3] {
     [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|shift| {
         let wave = (std::f32::consts::TAU * (hue + shift)).cos();
         (120.0 + 85.0 * wave) as u8

@@ -1,7 +1,9 @@
-//! Pictures of what a pack holds: NDF tiles, normals, placement, tile errors, dictionaries, environments, area lights.
+//! Pictures of what a pack holds: NDF tiles, normals, placement, tile errors, dictionaries, environments, area lights,
+//! lobes, seams of surfaces.
 
 mod cubes;
 mod histogram;
+mod lobes;
 mod maps;
 mod marginals;
 mod mip_rows;
@@ -9,9 +11,13 @@ mod mip_rows;
 use crate::canvas::Canvas;
 use crate::exit::{Exit, Failure};
 use crate::output;
-use glint_bake_core::{dictionary, ndf_maps::sections};
+use glam::DVec2;
+use glint_bake_core::footprint::Footprint;
+use glint_bake_core::lobes::query::QuerySettings;
+use glint_bake_core::surface::SurfaceSettings;
+use glint_bake_core::{dictionary, lobes::sections as lobe_sections, ndf_maps::sections, surface};
 use glint_formats::export::{Texels, Texture};
-use glint_formats::{FourCc, Pack, area_light, environment};
+use glint_formats::{FourCc, Pack, area_light, environment, lobes as lobe_format, synthesis};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
@@ -72,7 +78,27 @@ pub fn write_all(pack: &Pack, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
             }
         }
     }
+    for (i, name) in names_with(pack, lobe_format::PARAMS).into_iter().enumerate() {
+        let stem = file_stem(i, name);
+        let damaged = |e: glint_bake_core::error::BakeError| Failure::new(Exit::BadInput, format!("lobes {name}: {e}"));
+        let picture = if pack.find(synthesis::PARAMS, name).is_some() {
+            let surface = surface::sections::from_pack(pack, name).map_err(damaged)?;
+            write(format!("{stem}-patches.png"), lobes::patches(&surface.synthesis).to_png())?;
+            let roughness = surface.lobes.params.intrinsic_roughness.max(lobes::LEAST_ROUGHNESS);
+            lobes::density(|s| surface.p_ndf(&whole(), s, roughness, &SurfaceSettings::default()))
+        } else {
+            let map = lobe_sections::from_pack(pack, name).map_err(damaged)?;
+            let roughness = map.params.intrinsic_roughness.max(lobes::LEAST_ROUGHNESS);
+            lobes::density(|s| map.p_ndf(&whole(), s, roughness, &QuerySettings::default()))
+        };
+        write(format!("{stem}-ndf.png"), picture.to_png())?;
+    }
     Ok(written)
+}
+
+/// A footprint that sees every place of a map or surface.
+fn whole() -> Footprint {
+    Footprint::new(DVec2::ZERO, 1e6, 1.0, 0.0)
 }
 
 /// Names that have a section of this kind.
