@@ -1,6 +1,7 @@
 //! The image with the hardest sun, baked as by default, against sums over all its pixels. The report has all images.
 
-mod real_maps;
+#[path = "real_maps/folder.rs"]
+mod folder;
 
 use glint_bake::input::environment::load_environment;
 use glint_bake_core::environment::image::luminance;
@@ -9,7 +10,7 @@ use glint_bake_core::progress::Silent;
 
 #[test]
 fn a_noon_sun_keeps_to_the_error_asked_in_every_mip() {
-    let Some(data) = real_maps::data() else { return };
+    let Some(data) = folder::data() else { return };
     let loaded = load_environment(&data.join("hdri/noon_grass_1k.hdr"), 1 << 30).unwrap();
     let options = EnvironmentOptions { measured_texels: 0, ..EnvironmentOptions::default() };
     let environment = bake(&loaded.image, 0, &options, &Silent).unwrap();

@@ -4,7 +4,7 @@
 //! 4D Gaussian over position u (texels) and projected normal s. Its normal part leaves the intrinsic roughness σ_r out,
 //! which the evaluator adds. The finest level has no lobes: its lobes follow from the normals at run time.
 
-use crate::container::FourCc;
+use crate::container::{FourCc, Resource};
 use crate::ndf_maps::Wrap;
 use crate::vk_format;
 use bytemuck::{Pod, Zeroable};
@@ -164,6 +164,18 @@ pub struct LobesParams {
 }
 
 impl LobesParams {
+    /// What [`NORMALS`] is.
+    pub fn normals_resource(&self) -> Resource {
+        Resource::Texture {
+            vk_format: self.normals.vk_format(),
+            width: self.width,
+            height: self.height,
+            layers: 1,
+            faces: 1,
+            mips: 1,
+        }
+    }
+
     /// Texels from one cell of `cell_texels` to the next.
     pub fn step(&self, cell_texels: u32) -> u32 {
         if self.step_texels == 0 { cell_texels } else { cell_texels.min(self.step_texels) }

@@ -1,6 +1,5 @@
 //! Checks the contents of lobe sections: what an evaluator relies on when it walks cells and decodes lobes.
 
-use crate::container::Resource;
 use crate::issue::{Issue, IssueCode};
 use crate::lobes::{
     HalfLobe, LOBES, LobeLevel, LobeStorage, LobesParams, MAX_LOBES_PER_CELL, MAX_SIGMA_RATIO, MAX_TEXTURE_SIZE,
@@ -197,14 +196,7 @@ fn half_fault(lobe: &HalfLobe) -> (bool, Option<&'static str>) {
 }
 
 fn check_normals(section: Loaded<'_>, params: &LobesParams, issues: &mut Vec<Issue>) {
-    let shape = Resource::Texture {
-        vk_format: params.normals.vk_format(),
-        width: params.width,
-        height: params.height,
-        layers: 1,
-        faces: 1,
-        mips: 1,
-    };
+    let shape = params.normals_resource();
     if !section.expect(IssueCode::LobesNormalsShape, shape, issues) {
         return;
     }

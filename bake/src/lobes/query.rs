@@ -73,6 +73,35 @@ pub struct Lod {
     pub fraction: f32,
 }
 
+impl Lod {
+    /// Levels that are read, with their weights.
+    fn weighted(&self) -> impl Iterator<Item = (Detail, f32)> + use<> {
+        [(self.finer, 1.0 - self.fraction), (self.coarser, self.fraction)].into_iter().filter(|level| level.1 > 0.0)
+    }
+
+    /// Density of both levels together; `sum` gives a level's sums of densities and of shares.
+    pub(crate) fn density(&self, mut sum: impl FnMut(Detail) -> (f32, f32)) -> f32 {
+        let mut density = 0.0;
+        for (detail, weight) in self.weighted() {
+            let (mut densities, mut share) = sum(detail);
+            if share < LEAST_SHARE {
+                (densities, share) = sum(Detail::Whole);
+            }
+            density += weight * densities / share;
+        }
+        density
+    }
+
+    /// Lobes of both levels together; `add` adds those of a level to a list and gives the cells and boxes visited.
+    pub(crate) fn gather(&self, mut add: impl FnMut(&mut Vec<SeenLobe>, Detail) -> u32) -> Gathered {
+        let mut gathered = Gathered::default();
+        for (detail, weight) in self.weighted() {
+            gathered.add_level(detail, weight, &mut add);
+        }
+        gathered
+    }
+}
+
 /// A footprint on a map, and where what it sees goes.
 pub struct Query<'a, V: FnMut(&SeenLobe)> {
     lobes: &'a BakedLobes,
@@ -114,14 +143,7 @@ impl<'a, V: FnMut(&SeenLobe)> Query<'a, V> {
 
     /// Adds the lobes of the last level, every place alike.
     pub fn add_whole(&mut self) {
-        let top = &self.lobes.params.levels[self.lobes.params.levels.len() - 1];
-        let scales = Scales::new(&self.lobes.params, top);
-        for index in top.first_lobe..top.first_lobe + self.lobes.params.lobes_per_cell {
-            let lobe = self.lobes.lobe(index, &scales);
-            if lobe.weight > 0.0 {
-                (self.visit)(&eval::seen_whole(&lobe, self.roughness));
-            }
-        }
+        self.lobes.visit_whole(self.roughness, &mut self.visit);
     }
 
     /// Adds what the repeated map shows of a level under the footprint. Returns the number of cells or boxes visited.
@@ -222,74 +244,46 @@ impl BakedLobes {
             return 0.0;
         }
         let frame = self.frame(footprint);
-        let lod = self.lod(&frame, settings);
-        let mut density = 0.0;
-        for (detail, weight) in [(lod.finer, 1.0 - lod.fraction), (lod.coarser, lod.fraction)] {
-            if weight > 0.0 {
-                let (mut sum, mut share) = (0.0, 0.0);
-                let mut add = |seen: &SeenLobe| {
-                    sum += seen.density(s);
-                    share += seen.share;
-                };
-                let mut query = Query::new(self, frame, roughness, &mut add);
-                query.add_repeated(detail, settings.reach);
-                if share < LEAST_SHARE {
-                    // Nothing near enough for f32 to tell: the whole map is the best that is known.
-                    (sum, share) = (0.0, 0.0);
-                    let mut add = |seen: &SeenLobe| {
-                        sum += seen.density(s);
-                        share += seen.share;
-                    };
-                    Query::new(self, frame, roughness, &mut add).add_whole();
-                }
-                density += weight * sum / share;
-            }
-        }
-        density
+        self.lod(&frame, settings).density(|detail| {
+            let (mut sum, mut share) = (0.0, 0.0);
+            let visit = |seen: &SeenLobe| {
+                sum += seen.density(s);
+                share += seen.share;
+            };
+            Query::new(self, frame, roughness, visit).add_repeated(detail, settings.reach);
+            (sum, share)
+        })
     }
 
     /// The lobes that a footprint sees on the repeated map, shares summing to 1.
     pub fn gather(&self, footprint: &Footprint, roughness: f32, settings: &QuerySettings) -> Gathered {
         let frame = self.frame(footprint);
-        let lod = self.lod(&frame, settings);
-        let mut gathered = Gathered::default();
-        for (detail, weight) in [(lod.finer, 1.0 - lod.fraction), (lod.coarser, lod.fraction)] {
-            if weight > 0.0 {
-                self.gather_level(&frame, detail, weight, roughness, settings.reach, &mut gathered);
-            }
-        }
-        gathered
+        self.lod(&frame, settings).gather(|list, detail| self.add(list, &frame, detail, roughness, settings.reach))
     }
 
     /// The lobes that a footprint sees at one level.
     pub fn gather_detail(&self, footprint: &Footprint, detail: Detail, roughness: f32, reach: f32) -> Gathered {
+        let frame = self.frame(footprint);
         let mut gathered = Gathered::default();
-        self.gather_level(&self.frame(footprint), detail, 1.0, roughness, reach, &mut gathered);
+        gathered.add_level(detail, 1.0, |list, detail| self.add(list, &frame, detail, roughness, reach));
         gathered
     }
 
-    fn gather_level(
-        &self,
-        frame: &Frame,
-        detail: Detail,
-        weight: f32,
-        roughness: f32,
-        reach: f32,
-        into: &mut Gathered,
-    ) {
-        let first = into.lobes.len();
-        let add = |list: &mut Vec<SeenLobe>, detail: Detail| {
-            let mut push = |seen: &SeenLobe| list.push(*seen);
-            Query::new(self, *frame, roughness, &mut push).add_repeated(detail, reach)
-        };
-        into.cells += add(&mut into.lobes, detail);
-        let share = |list: &[SeenLobe]| list.iter().map(|seen| seen.share).sum::<f32>();
-        if share(&into.lobes[first..]) < LEAST_SHARE {
-            into.lobes.truncate(first);
-            add(&mut into.lobes, Detail::Whole);
+    /// Adds the lobes that a footprint sees at one level to a list.
+    fn add(&self, list: &mut Vec<SeenLobe>, frame: &Frame, detail: Detail, roughness: f32, reach: f32) -> u32 {
+        Query::new(self, *frame, roughness, |seen: &SeenLobe| list.push(*seen)).add_repeated(detail, reach)
+    }
+
+    /// Hands the lobes of the last level, every place alike, to `visit`.
+    pub(crate) fn visit_whole(&self, roughness: f32, visit: &mut impl FnMut(&SeenLobe)) {
+        let top = &self.params.levels[self.params.levels.len() - 1];
+        let scales = Scales::new(&self.params, top);
+        for index in top.first_lobe..top.first_lobe + self.params.lobes_per_cell {
+            let lobe = self.lobe(index, &scales);
+            if lobe.weight > 0.0 {
+                visit(&eval::seen_whole(&lobe, roughness));
+            }
         }
-        let scale = weight / share(&into.lobes[first..]);
-        into.lobes[first..].iter_mut().for_each(|seen| seen.share *= scale);
     }
 
     /// Axes of a footprint, its centre moved by whole periods into the map, where positions have the most digits.
@@ -322,8 +316,8 @@ pub(crate) fn bilinear(filter: Filter, u: Vec2, texel: impl Fn(i32, i32) -> Vec2
     (top + (bottom - top) * f.y, Mat2::from_cols(along, bottom - top), twist)
 }
 
-/// Sum of shares below which f32 cannot tell what a footprint sees.
-pub(crate) const LEAST_SHARE: f32 = 1e-30;
+/// Sum of shares below which f32 cannot tell what a footprint sees; the last level is the best that is known then.
+const LEAST_SHARE: f32 = 1e-30;
 
 /// What a footprint sees.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -335,6 +329,24 @@ pub struct Gathered {
 }
 
 impl Gathered {
+    /// Adds what a footprint sees of a level by `add`, shares summing to `weight`.
+    pub(crate) fn add_level(
+        &mut self,
+        detail: Detail,
+        weight: f32,
+        mut add: impl FnMut(&mut Vec<SeenLobe>, Detail) -> u32,
+    ) {
+        let first = self.lobes.len();
+        self.cells += add(&mut self.lobes, detail);
+        let share = |list: &[SeenLobe]| list.iter().map(|seen| seen.share).sum::<f32>();
+        if share(&self.lobes[first..]) < LEAST_SHARE {
+            self.lobes.truncate(first);
+            add(&mut self.lobes, Detail::Whole);
+        }
+        let scale = weight / share(&self.lobes[first..]);
+        self.lobes[first..].iter_mut().for_each(|seen| seen.share *= scale);
+    }
+
     /// Density at `s`, 0 outside the disk.
     pub fn density(&self, s: Vec2) -> f32 {
         if s.length_squared() > 1.0 { 0.0 } else { self.lobes.iter().map(|seen| seen.density(s)).sum() }

@@ -10,14 +10,7 @@ use glint_formats::{Codec, Pack, Resource, Section};
 pub fn to_sections(name: &str, baked: &BakedLobes, codec: Codec) -> Vec<Section> {
     let params = &baked.params;
     let stride = params.storage.stride();
-    let normals = Resource::Texture {
-        vk_format: params.normals.vk_format(),
-        width: params.width,
-        height: params.height,
-        layers: 1,
-        faces: 1,
-        mips: 1,
-    };
+    let normals = params.normals_resource();
     let mut sections = vec![
         Section::parameters(PARAMS, name, params),
         Section {

@@ -10,7 +10,7 @@ use super::Surface;
 use crate::footprint::Footprint;
 use crate::lobes::eval::{self, Frame, SeenLobe};
 use crate::lobes::quantise::{Lobe, Scales};
-use crate::lobes::query::{Detail, Gathered, LEAST_SHARE, Lod, QuerySettings, bilinear};
+use crate::lobes::query::{Detail, Gathered, Lod, QuerySettings, bilinear};
 use crate::lobes::span::span_x;
 use glam::{DVec2, Mat2, Vec2};
 use glint_formats::lobes::Filter;
@@ -242,15 +242,7 @@ impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
 
     /// Adds the lobes of the last level, every place alike.
     fn add_whole(&mut self) -> u32 {
-        let lobes = &self.surface.lobes;
-        let whole = &lobes.params.levels[lobes.params.levels.len() - 1];
-        let scales = Scales::new(&lobes.params, whole);
-        for index in whole.first_lobe..whole.first_lobe + lobes.params.lobes_per_cell {
-            let lobe = lobes.lobe(index, &scales);
-            if lobe.weight > 0.0 {
-                (self.visit)(&eval::seen_whole(&lobe, self.roughness));
-            }
-        }
+        self.surface.lobes.visit_whole(self.roughness, &mut self.visit);
         1
     }
 
@@ -266,18 +258,7 @@ impl Surface {
             return 0.0;
         }
         let view = self.view(footprint);
-        let lod = self.lod(&view, settings);
-        let mut density = 0.0;
-        for (detail, weight) in [(lod.finer, 1.0 - lod.fraction), (lod.coarser, lod.fraction)] {
-            if weight > 0.0 {
-                let (mut sum, mut share) = self.sum(view, s, detail, roughness, settings);
-                if share < LEAST_SHARE {
-                    (sum, share) = self.sum(view, s, Detail::Whole, roughness, settings);
-                }
-                density += weight * sum / share;
-            }
-        }
-        density
+        self.lod(&view, settings).density(|detail| self.sum(view, s, detail, roughness, settings))
     }
 
     fn sum(&self, view: View, s: Vec2, detail: Detail, roughness: f32, settings: &SurfaceSettings) -> (f32, f32) {
@@ -293,14 +274,7 @@ impl Surface {
     /// The lobes that a footprint sees, shares summing to 1.
     pub fn gather(&self, footprint: &Footprint, roughness: f32, settings: &SurfaceSettings) -> Gathered {
         let view = self.view(footprint);
-        let lod = self.lod(&view, settings);
-        let mut gathered = Gathered::default();
-        for (detail, weight) in [(lod.finer, 1.0 - lod.fraction), (lod.coarser, lod.fraction)] {
-            if weight > 0.0 {
-                self.gather_level(view, detail, weight, roughness, settings, &mut gathered);
-            }
-        }
-        gathered
+        self.lod(&view, settings).gather(|list, detail| self.add(list, view, detail, roughness, settings))
     }
 
     /// The lobes that a footprint sees at one level.
@@ -311,33 +285,23 @@ impl Surface {
         roughness: f32,
         settings: &SurfaceSettings,
     ) -> Gathered {
+        let view = self.view(footprint);
         let mut gathered = Gathered::default();
-        self.gather_level(self.view(footprint), detail, 1.0, roughness, settings, &mut gathered);
+        gathered.add_level(detail, 1.0, |list, detail| self.add(list, view, detail, roughness, settings));
         gathered
     }
 
-    fn gather_level(
+    /// Adds the lobes that a footprint sees at one level to a list.
+    fn add(
         &self,
+        list: &mut Vec<SeenLobe>,
         view: View,
         detail: Detail,
-        weight: f32,
         roughness: f32,
         settings: &SurfaceSettings,
-        into: &mut Gathered,
-    ) {
-        let first = into.lobes.len();
-        let add = |list: &mut Vec<SeenLobe>, detail: Detail| {
-            let visit = |seen: &SeenLobe| list.push(*seen);
-            SurfaceQuery { surface: self, view, roughness, settings, visit }.add(detail)
-        };
-        into.cells += add(&mut into.lobes, detail);
-        let share = |list: &[SeenLobe]| list.iter().map(|seen| seen.share).sum::<f32>();
-        if share(&into.lobes[first..]) < LEAST_SHARE {
-            into.lobes.truncate(first);
-            add(&mut into.lobes, Detail::Whole);
-        }
-        let scale = weight / share(&into.lobes[first..]);
-        into.lobes[first..].iter_mut().for_each(|seen| seen.share *= scale);
+    ) -> u32 {
+        let visit = |seen: &SeenLobe| list.push(*seen);
+        SurfaceQuery { surface: self, view, roughness, settings, visit }.add(detail)
     }
 
     /// The levels that serve a footprint; the last of the lobes is the whole surface.
