@@ -1,0 +1,9 @@
+//! The device, what is bound on it, and how programs run there.
+
+mod compute;
+mod device;
+mod resources;
+
+pub use compute::answer;
+pub use device::{Gpu, GpuError, Wish};
+pub use resources::{GpuTexture, ResourceSet, Resources};

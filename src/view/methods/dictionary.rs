@@ -1,0 +1,49 @@
+//! A slope dictionary on the GPU: `bind_dictionary.wgsl`.
+
+use crate::gpu::{Gpu, GpuTexture, ResourceSet, Resources};
+use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
+use glint_bake_core::dictionary::tables::Dictionary;
+
+/// `GlintDictionaryTables`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct TablesUniform {
+    marginals: u32,
+    levels: u32,
+    entries: u32,
+    alpha_dict: f32,
+    domain: f32,
+    inv_spacing: f32,
+    lobe_area: f32,
+    unused: f32,
+}
+
+/// Uploads a dictionary and the colours of its glints (linear RGB; none means white).
+pub fn upload(gpu: &Gpu, dictionary: &Dictionary, colours: &[Vec3]) -> Resources {
+    let tables = dictionary.tables();
+    let uniform = TablesUniform {
+        marginals: tables.marginals,
+        levels: tables.levels,
+        entries: tables.entries,
+        alpha_dict: tables.alpha_dict,
+        domain: tables.domain,
+        inv_spacing: tables.inv_spacing,
+        lobe_area: tables.lobe_area,
+        unused: 0.0,
+    };
+    let shape = dictionary.shape();
+    let texture = GpuTexture {
+        format: wgpu::TextureFormat::R16Float,
+        size: [shape.width, shape.height],
+        layers: 1,
+        mips: 1,
+        dimension: wgpu::TextureViewDimension::D2,
+    };
+    let colours: Vec<[f32; 4]> = colours.iter().map(|colour| colour.extend(1.0).to_array()).collect();
+    let mut set = ResourceSet::default();
+    set.uniform(gpu, bytemuck::bytes_of(&uniform));
+    set.texture(gpu, texture, false, &dictionary.payload());
+    set.storage(gpu, bytemuck::cast_slice(&colours));
+    set.finish(gpu)
+}

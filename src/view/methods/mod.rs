@@ -1,0 +1,3 @@
+//! From the sections of a pack to what the WGSL of each method binds.
+
+pub mod dictionary;

@@ -1,0 +1,101 @@
+// What every program of the viewer binds in group 0, and the point that is shaded.
+//
+// A method gives, in its shade_<method>.wgsl:
+//   fn shade_reflect(point: ViewPoint, light: vec3f) -> vec3f
+//       BRDF times n.l for light from the unit direction `light` (tangent frame), linear RGB
+//   fn shade_reference(point: ViewPoint, light: vec3f, random: vec2f) -> vec3f
+//       the same, as one sample whose mean over `random` in [0, 1)^2 is what the method approximates
+//   fn shade_rect(point: ViewPoint) -> vec3f
+//       radiance towards the viewer from the scene's rectangle; shade_rect_points.wgsl does it by samples of shade_reflect
+//   fn shade_environment(point: ViewPoint) -> vec3f
+//       radiance towards the viewer from the environment; shade_environment_smooth.wgsl does it without glints
+//   fn shade_lod(point: ViewPoint) -> f32
+//       level of detail that is read, 0 the finest
+
+struct ViewPointLight {
+    position: vec3f,
+    // Radiant intensity, linear RGB.
+    intensity: vec3f,
+}
+
+struct ViewScene {
+    clip_from_world: mat4x4f,
+    camera: vec3f,
+    // Running number of the frame, which random numbers depend on.
+    frame: u32,
+    // Unit direction towards the directional light.
+    sun: vec3f,
+    point_count: u32,
+    // Irradiance of a surface that faces the directional light.
+    sun_irradiance: vec3f,
+    // Surface units on one unit of uv.
+    uv_scale: f32,
+    points: array<ViewPointLight, 4>,
+    // Corners of the rectangle light in order, counter-clockwise on the side that radiates.
+    rect: array<vec4f, 4>,
+    rect_radiance: vec3f,
+    rect_two_sided: u32,
+    // Columns: world directions to those of the environment.
+    environment_from_world: mat3x3f,
+    // Factor on the environment's radiance.
+    environment_gain: f32,
+    // Exposed part of the picture: x from .. to, in pixels.
+    split_from: f32,
+    split_to: f32,
+}
+
+// One for all methods; each reads what it has.
+struct ViewMaterial {
+    // Reflectance at normal incidence, linear RGB.
+    f0: vec3f,
+    // Intrinsic roughness of NDF maps and lobes, as a standard deviation of projected normals.
+    intrinsic_roughness: f32,
+    // Roughness along the tangent axes: of the smooth BRDF, the dictionary, environments and the base of area lights.
+    alpha: vec2f,
+    // 0 Beckmann, 1 GGX.
+    normal_target: u32,
+    // Facets on one surface unit squared.
+    density: f32,
+    mean_colour: vec3f,
+    // Share of the surface that glints, 0 to 1.
+    relative_area: f32,
+    density_randomisation: f32,
+    max_anisotropy: f32,
+    seed: u32,
+    // Number of glint colours.
+    colours: u32,
+    // Texels of the map on one surface unit; 1 for methods without a map.
+    texels_per_unit: f32,
+    // Lobes of directional roughness of area lights, 0 to 9.
+    lobes: u32,
+    // Factor on the density of the reference's footprint: standard deviation of a pixel, in pixels.
+    pixel_sigma: f32,
+    // Switches of a method, see its shade file.
+    switches: u32,
+}
+
+// The pixel's place on the surface and its frame.
+struct ViewPoint {
+    // Place and its derivatives along the screen's axes, a pixel, in surface units.
+    uv: vec2f,
+    d_dx: vec2f,
+    d_dy: vec2f,
+    // Unit direction to the camera in the tangent frame.
+    view: vec3f,
+    // World position, and unit tangent (along +u), bitangent (against +v) and normal.
+    position: vec3f,
+    tangent: vec3f,
+    bitangent: vec3f,
+    normal: vec3f,
+}
+
+@group(0) @binding(0) var<uniform> scene: ViewScene;
+@group(0) @binding(1) var<uniform> material: ViewMaterial;
+
+fn view_to_tangent(point: ViewPoint, world: vec3f) -> vec3f {
+    return vec3f(dot(world, point.tangent), dot(world, point.bitangent), dot(world, point.normal));
+}
+
+fn view_to_world(point: ViewPoint, tangent: vec3f) -> vec3f {
+    return point.tangent * tangent.x + point.bitangent * tangent.y + point.normal * tangent.z;
+}

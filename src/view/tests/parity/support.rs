@@ -1,0 +1,57 @@
+//! The adapter, random queries, and the comparison of answers.
+
+use glint_view::gpu::{Gpu, Wish};
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
+use std::sync::OnceLock;
+
+/// Queries a method, at least.
+pub const QUERIES: usize = 10_000;
+
+/// The device, or nothing where there is none and none is required.
+pub fn gpu() -> Option<&'static Gpu> {
+    static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
+    let gpu = GPU.get_or_init(|| match Gpu::headless(&Wish::default()) {
+        Ok(gpu) => Some(gpu),
+        Err(error) if std::env::var_os("GLINT_REQUIRE_ADAPTER").is_some_and(|v| v == "1") => panic!("{error}"),
+        Err(error) => {
+            eprintln!("skipped: {error}");
+            None
+        }
+    });
+    gpu.as_ref()
+}
+
+/// Random numbers of a test.
+pub fn random(seed: u64) -> Pcg64 {
+    Pcg64::seed_from_u64(seed)
+}
+
+/// Whether two numbers agree: 1e-3 of the larger, and 1e-5 where both are small.
+pub fn agree(gpu: f32, cpu: f32) -> bool {
+    (gpu.is_finite() && cpu.is_finite()) && (gpu - cpu).abs() <= 1e-3 * cpu.abs().max(gpu.abs()) + 1e-5
+}
+
+/// Fails with the worst of the answers if any two disagree; prints how near they are.
+pub fn compare(what: &str, answers: impl Iterator<Item = (f32, f32)>) {
+    let (mut count, mut nonzero, mut wrong) = (0, 0, Vec::new());
+    let mut worst = 0.0f32;
+    for (i, (gpu, cpu)) in answers.enumerate() {
+        count += 1;
+        nonzero += usize::from(cpu != 0.0);
+        if !agree(gpu, cpu) {
+            wrong.push((i, gpu, cpu));
+        } else if cpu.abs() > 1e-2 {
+            worst = worst.max((gpu - cpu).abs() / cpu.abs());
+        }
+    }
+    println!("{what}: {count} answers, {nonzero} not zero, worst relative difference {worst:.1e}");
+    assert!(count >= QUERIES, "{what}: only {count} answers");
+    assert!(nonzero * 4 > count, "{what}: only {nonzero} of {count} are not zero, which shows little");
+    assert!(
+        wrong.is_empty(),
+        "{what}: {} of {count} disagree (index, GPU, CPU): {:?}",
+        wrong.len(),
+        &wrong[..wrong.len().min(8)]
+    );
+}
