@@ -4,3 +4,5 @@
 
 pub mod gpu;
 pub mod methods;
+pub mod render;
+pub mod scene;
