@@ -4,3 +4,4 @@
 
 pub mod gpu;
 pub mod methods;
+pub mod scene;
