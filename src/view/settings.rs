@@ -1,8 +1,8 @@
 //! All that a user sets, in the window's panel or by flags, and the view that follows from it.
 
 use crate::render::{
-    Camera, Compare, Display, Environment, Lights, Material, Overlay, PointLight, RectLight, Scene, Shown, Side, Sun,
-    ToneMapping, View,
+    Camera, Compare, Display, Environment, LightKind, Lights, Material, Overlay, PointLight, RectLight, Scene, Shown,
+    Side, Sun, ToneMapping, View,
 };
 use crate::scene::Orbit;
 use glam::Vec3;
@@ -73,6 +73,14 @@ impl Default for LightSettings {
 }
 
 impl LightSettings {
+    /// Switches these on and all others off.
+    pub fn only(&mut self, kinds: &[LightKind]) {
+        self.sun_on = kinds.contains(&LightKind::Sun);
+        self.points_on = kinds.contains(&LightKind::Points);
+        self.rect_on = kinds.contains(&LightKind::Rect);
+        self.environment_on = kinds.contains(&LightKind::Environment);
+    }
+
     fn lights(&self) -> Lights {
         Lights {
             sun: self.sun_on.then_some(self.sun),

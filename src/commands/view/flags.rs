@@ -98,7 +98,7 @@ pub struct SceneFlags {
     pub camera: Option<String>,
     /// Lights that are on [default: the rectangle for area lights, the environment for environments, else the sun]
     #[arg(long, value_name = "LIGHT", value_delimiter = ',')]
-    pub light: Vec<LightKind>,
+    pub light: Vec<LightFlag>,
     /// Direction towards the sun
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::direction)]
     pub sun: Option<[f32; 3]>,
@@ -127,7 +127,7 @@ pub struct MaterialFlags {
     #[arg(long, value_name = "SHARE", value_parser = values::reflectance)]
     pub relative_area: Option<f32>,
     /// Standard deviation of a cell's level of density
-    #[arg(long, value_name = "LEVELS", value_parser = values::reflectance)]
+    #[arg(long, value_name = "LEVELS", value_parser = values::not_negative)]
     pub density_randomisation: Option<f32>,
     /// Largest ratio of the footprint's axes, 1 to 16
     #[arg(long, value_name = "RATIO", value_parser = values::positive)]
@@ -195,7 +195,7 @@ pub enum ShapeKind {
 
 /// Lights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum LightKind {
+pub enum LightFlag {
     /// Directional light
     Sun,
     /// Points

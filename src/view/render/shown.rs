@@ -4,6 +4,19 @@ use super::uniforms::Material;
 use crate::gpu::Resources;
 use std::rc::Rc;
 
+/// A kind of light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightKind {
+    /// Light from one direction.
+    Sun,
+    /// Points.
+    Points,
+    /// A rectangle.
+    Rect,
+    /// The environment of a pack.
+    Environment,
+}
+
 /// A way to shade a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Method {
@@ -19,6 +32,28 @@ impl Method {
         match self {
             Method::Smooth => "smooth",
             Method::Dictionary => "dictionary",
+        }
+    }
+
+    /// The light that it is made for.
+    pub fn usual_light(self) -> LightKind {
+        match self {
+            Method::Smooth | Method::Dictionary => LightKind::Sun,
+        }
+    }
+
+    /// What its cost is compared with: the same light on a surface without glints; nothing for those themselves.
+    pub fn baseline(self) -> Option<Method> {
+        match self {
+            Method::Smooth => None,
+            Method::Dictionary => Some(Method::Smooth),
+        }
+    }
+
+    /// Whether it draws a map, whose texels have a size on the surface.
+    pub fn has_map(self) -> bool {
+        match self {
+            Method::Smooth | Method::Dictionary => false,
         }
     }
 

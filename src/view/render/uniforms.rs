@@ -6,6 +6,9 @@ use glam::{Mat3, Mat4, Vec2, Vec3};
 /// Lights of a scene, most of them at once.
 pub const MAX_POINT_LIGHTS: usize = 4;
 
+/// Bit of [`Material::switches`]: layers of two-layer materials are exchanged.
+pub const SWAP_LAYERS: u32 = 1;
+
 /// Where the camera is. +Y of the world is up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
