@@ -56,6 +56,7 @@ impl Setup {
         settings.shown = index;
         settings.against = Against::Nothing;
         settings.lights.only(&[shown.method.usual_light()]);
+        settings.lights.room_on = false;
         let material = settings.materials[index];
         if shown.method.has_map() {
             settings.uv_scale = TEXELS_PER_PIXEL * size[1] as f32 / material.texels_per_unit;

@@ -49,6 +49,8 @@ pub struct LightSettings {
     pub environment_on: bool,
     /// How it is turned and scaled.
     pub environment: Environment,
+    /// Whether a dim room is around the scene; not where the environment is on.
+    pub room_on: bool,
 }
 
 impl Default for LightSettings {
@@ -68,6 +70,7 @@ impl Default for LightSettings {
             },
             environment_on: false,
             environment: Environment { turn: 0.0, gain: 1.0 },
+            room_on: true,
         }
     }
 }
@@ -87,6 +90,7 @@ impl LightSettings {
             points: if self.points_on { self.points.clone() } else { Vec::new() },
             rect: self.rect_on.then_some(self.rect),
             environment: self.environment_on.then_some(self.environment),
+            room: self.room_on && !self.environment_on,
         }
     }
 }

@@ -83,6 +83,7 @@ struct MeshBuffers {
 pub struct Renderer {
     mesh: MeshBuffers,
     environment: Rc<Resources>,
+    nothing: Resources,
     scene_layout: wgpu::BindGroupLayout,
     pipelines: Pipelines,
     accumulate: Accumulate,
@@ -124,6 +125,7 @@ impl Renderer {
         Ok(Renderer {
             mesh: mesh_buffers(gpu, mesh),
             environment: Rc::new(ResourceSet::default().finish(gpu)),
+            nothing: ResourceSet::default().finish(gpu),
             scene_layout,
             pipelines: Pipelines::default(),
             accumulate: Accumulate::new(gpu)?,
@@ -213,7 +215,8 @@ impl Renderer {
             overlay: view_of.display.overlay.number(),
         };
         let data = &side.shown.data;
-        let pipeline = self.pipelines.get(gpu, key, &self.scene_layout, data, &self.environment)?;
+        let pipeline = self.pipelines.get(gpu, key, &self.scene_layout, data, &self.environment)?.clone();
+        let background = self.pipelines.background(gpu, key.lights, &self.scene_layout, &self.environment)?;
         self.passes.push(if index == 0 { "surface" } else { "surface, right" });
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("surface"),
@@ -231,13 +234,16 @@ impl Renderer {
             timestamp_writes: self.timing.next(),
             ..Default::default()
         });
-        pass.set_pipeline(pipeline);
+        pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &group, &[]);
         pass.set_bind_group(1, &data.group, &[]);
         pass.set_bind_group(2, &self.environment.group, &[]);
         pass.set_vertex_buffer(0, self.mesh.vertices.slice(..));
         pass.set_index_buffer(self.mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..self.mesh.count, 0, 0..1);
+        pass.set_pipeline(background);
+        pass.set_bind_group(1, &self.nothing.group, &[]);
+        pass.draw(0..3, 0..1);
         drop(pass);
         if view_of.converges() {
             self.passes.push("mean");

@@ -93,6 +93,8 @@ pub struct Lights {
     pub rect: Option<RectLight>,
     /// Environment.
     pub environment: Option<Environment>,
+    /// A dim room around the scene, so that shapes show where no light reaches.
+    pub room: bool,
 }
 
 impl Lights {
@@ -102,6 +104,7 @@ impl Lights {
             | u32::from(!self.points.is_empty()) << 1
             | u32::from(self.rect.is_some()) << 2
             | u32::from(self.environment.is_some()) << 3
+            | u32::from(self.room) << 4
     }
 }
 

@@ -38,9 +38,12 @@ modules! {
     "bind_dictionary" needs ["glint_dictionary"];
     "query_dictionary" needs ["bind_dictionary"];
     "view_scene" needs [];
-    "view_surface" needs ["view_scene", "glint_hash"];
+    "view_surface" needs ["view_scene", "view_sky", "glint_brdf", "glint_hash"];
+    "view_sky" needs [];
+    "view_background" needs ["view_scene", "view_sky"];
     "view_accumulate" needs [];
     "view_present" needs [];
+    "shade_background_none" needs [];
     "shade_environment_none" needs ["view_scene"];
     "shade_smooth" needs ["view_scene", "glint_brdf"];
     "shade_dictionary" needs ["view_scene", "glint_brdf", "bind_dictionary"];
