@@ -25,6 +25,8 @@ impl Default for BenchSettings {
 
 /// Texels of a map that a pixel is wide and high where it is seen from straight ahead.
 const TEXELS_PER_PIXEL: f32 = 2.0;
+/// Edge of the wall: it fills the picture from the side, too.
+const WALL: f32 = 16.0;
 /// Vertical field of view in radians (35°).
 const FIELD_OF_VIEW: f32 = 0.610_865_24;
 
@@ -58,8 +60,10 @@ impl Setup {
         settings.lights.only(&[shown.method.usual_light()]);
         settings.lights.room_on = false;
         let material = settings.materials[index];
+        // One unit of uv is the whole wall; the picture shows a height of 1 of it.
+        settings.uv_scale = WALL;
         if shown.method.has_map() {
-            settings.uv_scale = TEXELS_PER_PIXEL * size[1] as f32 / material.texels_per_unit;
+            settings.uv_scale *= TEXELS_PER_PIXEL * size[1] as f32 / material.texels_per_unit;
         }
         let distance = 0.5 / (0.5 * FIELD_OF_VIEW).tan();
         let places = [("ahead", Vec3::new(0.0, 0.0, 1.0)), ("60°", Vec3::new(0.0, -0.866_025_4, 0.5))];
@@ -72,7 +76,7 @@ impl Setup {
                 let position = direction * distance;
                 view.scene.camera = Camera { position, target: Vec3::ZERO, field_of_view: FIELD_OF_VIEW, near: 0.01 };
                 let baseline = Shown { material, ..base.clone() };
-                Setup { name, mesh: Mesh::wall(16.0, 16.0), view, baseline }
+                Setup { name, mesh: Mesh::wall(WALL, WALL), view, baseline }
             })
             .into()
     }

@@ -11,7 +11,7 @@ const SEEDS: u32 = 1024;
 fn the_mean_over_seeds_is_the_smooth_brdf() {
     let Some(gpu) = gpu() else { return };
     let subjects = subjects(gpu);
-    for (method, densities) in [(Method::Dictionary, [1.0e4, 1.0e6])] {
+    for (method, densities) in [(Method::Dictionary, [1.0e6, 1.0e9])] {
         let index = index_of(&subjects, method);
         for density in densities {
             let (mesh, mut settings, view) = wall(&subjects, index, [48, 32]);
