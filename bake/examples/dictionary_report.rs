@@ -7,8 +7,9 @@
 use glam::{DVec2, Vec2, Vec3};
 use glint_bake_core::dictionary::brdf::{masking, normal_to_slope, sdf_to_ndf};
 use glint_bake_core::dictionary::eval::{
-    GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_sdf, patch_sdf,
+    GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_sdf, patch_sdf, slope_query,
 };
+use glint_bake_core::dictionary::hash::cell_state;
 use glint_bake_core::dictionary::quality::{LevelQuality, domain_floor, measure_level};
 use glint_bake_core::dictionary::reference::smooth_density;
 use glint_bake_core::dictionary::tables::{Dictionary, Tables};
@@ -211,7 +212,17 @@ fn one_cell_l1(tables: &Tables, target: u32) -> f64 {
             for b in 0..2 * n {
                 let slope = DVec2::from_angle((b as f64 + 0.5) / n as f64 * PI) * r * 0.5;
                 let level = (tables.levels - 1) as f32;
-                let value = f64::from(cell_sdf(tables, &m, cell * 977, cell, level, slope.as_vec2()).0.x);
+                let value = f64::from(
+                    cell_sdf(
+                        tables,
+                        &m,
+                        cell_state(cell * 977, cell, m.seed),
+                        level,
+                        &slope_query(tables, &m, slope.as_vec2()),
+                    )
+                    .0
+                    .x,
+                );
                 sum += (value / smooth_density(ggx, DVec2::splat(0.5), slope) - 1.0).abs();
             }
         }

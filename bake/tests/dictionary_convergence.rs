@@ -3,8 +3,9 @@
 use glam::{DVec2, Vec2, Vec3};
 use glint_bake_core::dictionary::brdf::{masking, normal_to_slope, sdf_to_ndf};
 use glint_bake_core::dictionary::eval::{
-    GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_sdf, patch_sdf,
+    GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_sdf, patch_sdf, slope_query,
 };
+use glint_bake_core::dictionary::hash::cell_state;
 use glint_bake_core::dictionary::reference::smooth_density;
 use glint_bake_core::dictionary::tables::Tables;
 use glint_bake_core::dictionary::{DictionaryOptions, bake};
@@ -40,7 +41,15 @@ fn cell_l1(tables: &Tables, m: &GlintMaterial, cell: u32, level: f32, n: usize) 
         let u = (a as f64 + 0.5) / n as f64;
         for b in 0..2 * n {
             let slope = slope_at(ggx, alpha, u, (b as f64 + 0.5) / n as f64 * PI);
-            let value = cell_sdf(tables, m, cell * 977, cell, level, slope.as_vec2()).0.x;
+            let value = cell_sdf(
+                tables,
+                m,
+                cell_state(cell * 977, cell, m.seed),
+                level,
+                &slope_query(tables, m, slope.as_vec2()),
+            )
+            .0
+            .x;
             sum += (f64::from(value) / smooth_density(ggx, alpha, slope) - 1.0).abs();
         }
     }
@@ -105,7 +114,17 @@ fn mean_over_cells_l1(tables: &Tables, m: &GlintMaterial, level: f32, cells: u32
             for b in 0..16 {
                 let (u, phi) = ((a as f64 + du) / 16.0, (b as f64 + dphi) / 16.0 * 2.0 * PI);
                 let slope = slope_at(ggx, alpha, u.clamp(1e-9, 1.0 - 1e-9), phi);
-                let value = f64::from(cell_sdf(tables, m, cell * 31, cell / 7, level, slope.as_vec2()).0.x);
+                let value = f64::from(
+                    cell_sdf(
+                        tables,
+                        &m,
+                        cell_state(cell * 31, cell / 7, m.seed),
+                        level,
+                        &slope_query(tables, &m, slope.as_vec2()),
+                    )
+                    .0
+                    .x,
+                );
                 shares[a / 2 * 8 + b / 2] += value / smooth_density(ggx, alpha, slope);
             }
         }

@@ -4,4 +4,5 @@
 
 pub mod gpu;
 pub mod methods;
+pub mod render;
 pub mod scene;

@@ -14,7 +14,7 @@
 //! - Density randomisation takes its normal number from two uniform ones, so its tails are bounded.
 
 use super::cells::{MAX_CELL_LEVEL, PixelFootprint, cell_weight, level_window, pixel_footprint, row_span};
-use super::hash::{cell_state, draw_bits, draw_uniform};
+use super::hash::{CellState, cell_state_in_row, draw_bits, draw_uniform, row_key};
 use super::tables::Tables;
 use glam::{Vec2, Vec3};
 
@@ -127,31 +127,21 @@ pub fn facet_level(tables: &Tables, material: &GlintMaterial, cell_level: u32) -
     0.5 * material.density.max(1.0e-30).log2() - cells_above
 }
 
-/// Slope distribution of one cell (Eq. 11): density by colour, and 1 or 0 as the cell glints or not. `x` and `y` are
-/// coherent indices (Eq. 8), those of the cell's first cell of level 0.
-pub fn cell_sdf(
-    tables: &Tables,
-    material: &GlintMaterial,
-    x: u32,
-    y: u32,
-    facet_level: f32,
-    slope: Vec2,
-) -> (Vec3, f32) {
-    let state = cell_state(x, y, material.seed);
-    if draw_uniform(state, DRAW_COVERAGE) >= material.relative_area {
-        return (Vec3::ZERO, 0.0);
-    }
-    let mut wished = facet_level;
-    if material.density_randomisation > 0.0 {
-        let radius = (-2.0 * (1.0 - draw_uniform(state, DRAW_DENSITY_RADIUS)).ln()).sqrt();
-        let normal = radius * (2.0 * PI * draw_uniform(state, DRAW_DENSITY_ANGLE)).cos();
-        wished += material.density_randomisation * normal;
-    }
-    let level = (wished + 0.5).floor().clamp(0.0, tables.levels as f32) as u32;
-    if level == tables.levels {
-        return (material.mean_colour * smooth_sdf(material, slope), 1.0);
-    }
+/// A slope as all cells see it: what of a look-up does not depend on the cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlopeQuery {
+    /// Slope in the dictionary's plane, before the cell's rotation.
+    pub in_dict: Vec2,
+    /// Squared slope in units of the dictionary's roughness.
+    pub q_dict: f32,
+    /// From the dictionary's density to that of the material.
+    pub jacobian: f32,
+    /// The smooth target.
+    pub smooth: f32,
+}
 
+/// The query for a slope of a material.
+pub fn slope_query(tables: &Tables, material: &GlintMaterial, slope: Vec2) -> SlopeQuery {
     let v = scaled_slope(material, slope);
     let q = v.x * v.x + v.y * v.y;
     let mut stretch = tables.alpha_dict;
@@ -163,14 +153,43 @@ pub fn cell_sdf(
         q_dict = q * ratio;
         jacobian /= 1.0 + q;
     }
+    SlopeQuery { in_dict: v * stretch, q_dict, jacobian, smooth: smooth_sdf(material, slope) }
+}
+
+/// Slope distribution of one cell (Eq. 11): density by colour, and 1 or 0 as the cell glints or not. `state` is that of
+/// the cell's coherent index (Eq. 8), its first cell of level 0.
+pub fn cell_sdf(
+    tables: &Tables,
+    material: &GlintMaterial,
+    state: CellState,
+    facet_level: f32,
+    query: &SlopeQuery,
+) -> (Vec3, f32) {
+    if material.relative_area < 1.0 && draw_uniform(state, DRAW_COVERAGE) >= material.relative_area {
+        return (Vec3::ZERO, 0.0);
+    }
+    let mut wished = facet_level;
+    if material.density_randomisation > 0.0 {
+        let radius = (-2.0 * (1.0 - draw_uniform(state, DRAW_DENSITY_RADIUS)).ln()).sqrt();
+        let normal = radius * (2.0 * PI * draw_uniform(state, DRAW_DENSITY_ANGLE)).cos();
+        wished += material.density_randomisation * normal;
+    }
+    let level = (wished + 0.5).floor().clamp(0.0, tables.levels as f32) as u32;
+    if level == tables.levels {
+        return (material.mean_colour * query.smooth, 1.0);
+    }
+
     let angle = 2.0 * PI * draw_uniform(state, DRAW_ROTATION);
     let (sin, cos) = (angle.sin(), angle.cos());
-    let px = stretch * (cos * v.x + sin * v.y);
-    let py = stretch * (cos * v.y - sin * v.x);
+    let px = cos * query.in_dict.x + sin * query.in_dict.y;
+    let py = cos * query.in_dict.y - sin * query.in_dict.x;
     let i = pick(tables.marginals, draw_bits(state, DRAW_MARGINAL_X));
     let j = pick(tables.marginals, draw_bits(state, DRAW_MARGINAL_Y));
-    let sdf = marginal(tables, i, level, px.abs()) * marginal(tables, j, level, py.abs()) * jacobian;
-    (glint_colour(tables, material, draw_bits(state, DRAW_COLOUR), level, q_dict) * sdf, 1.0)
+    let sdf = marginal(tables, i, level, px.abs()) * marginal(tables, j, level, py.abs()) * query.jacobian;
+    if material.colours.is_empty() {
+        return (Vec3::splat(sdf), 1.0);
+    }
+    (glint_colour(tables, material, draw_bits(state, DRAW_COLOUR), level, query.q_dict) * sdf, 1.0)
 }
 
 /// Index below `count` from the upper 16 bits of a random word.
@@ -178,13 +197,9 @@ pub fn pick(count: u32, bits: u32) -> u32 {
     ((bits >> 16) * count) >> 16
 }
 
-/// Colour of a cell's glint: the cell's own colour while a facet or less is lit, the mean of all where many are.
+/// Colour of a cell's glint, of a material that has colours: the cell's own colour while a facet or less is lit, the mean of all where many are.
 pub fn glint_colour(tables: &Tables, material: &GlintMaterial, bits: u32, level: u32, q_dict: f32) -> Vec3 {
-    let count = material.colours.len() as u32;
-    if count == 0 {
-        return Vec3::ONE;
-    }
-    let own = material.colours[pick(count, bits) as usize];
+    let own = material.colours[pick(material.colours.len() as u32, bits) as usize];
     let density = (-q_dict).exp() / (PI * tables.alpha_dict * tables.alpha_dict);
     let lit = (2.0 * (level as f32 + 1.0)).exp2() * tables.lobe_area * density;
     let share = 1.0 / lit.max(1.0).sqrt();
@@ -198,12 +213,12 @@ pub fn level_sdf(
     footprint: PixelFootprint,
     position: Vec2,
     level: u32,
-    slope: Vec2,
+    query: &SlopeQuery,
 ) -> SlopeSum {
     let count_level = facet_level(tables, material, level);
     if count_level - 6.0 * material.density_randomisation >= tables.levels as f32 - 0.5 && material.relative_area >= 1.0
     {
-        return SlopeSum { sdf: material.mean_colour * smooth_sdf(material, slope), coverage: 1.0, cells: 0 };
+        return SlopeSum { sdf: material.mean_colour * query.smooth, coverage: 1.0, cells: 0 };
     }
     let window = level_window(footprint, position, level);
     let mut sdf = Vec3::ZERO;
@@ -212,11 +227,13 @@ pub fn level_sdf(
     let mut cells = 0;
     for row in window.first_row..=window.last_row {
         let (first, last) = row_span(window, row);
+        let y = (window.base_y.wrapping_add(row) as u32) << level;
+        let key = row_key(y, material.seed);
         for column in first..=last {
             let weight = cell_weight(window, column, row);
             let x = (window.base_x.wrapping_add(column) as u32) << level;
-            let y = (window.base_y.wrapping_add(row) as u32) << level;
-            let (cell, covered) = cell_sdf(tables, material, x, y, count_level, slope);
+            let state = cell_state_in_row(x, y, key, material.seed);
+            let (cell, covered) = cell_sdf(tables, material, state, count_level, query);
             sdf += cell * weight;
             coverage += covered * weight;
             total += weight;
@@ -235,8 +252,9 @@ pub fn patch_sdf(tables: &Tables, material: &GlintMaterial, pixel: PixelOnSurfac
     let fine = footprint.lod.floor().min((MAX_CELL_LEVEL - 1) as f32);
     let blend = footprint.lod - fine;
     let cell_position = pixel.position * cells_per_unit;
-    let a = level_sdf(tables, material, footprint, cell_position, fine as u32, slope);
-    let b = level_sdf(tables, material, footprint, cell_position, fine as u32 + 1, slope);
+    let query = slope_query(tables, material, slope);
+    let a = level_sdf(tables, material, footprint, cell_position, fine as u32, &query);
+    let b = level_sdf(tables, material, footprint, cell_position, fine as u32 + 1, &query);
     SlopeSum {
         sdf: a.sdf + (b.sdf - a.sdf) * blend,
         coverage: a.coverage + (b.coverage - a.coverage) * blend,

@@ -26,11 +26,20 @@ pub fn mix_bits(value: u32) -> u32 {
     v
 }
 
+/// What all cells of row `y` share: the first round.
+pub fn row_key(y: u32, seed: u32) -> u32 {
+    mix_bits(y.wrapping_add(seed).wrapping_add(0x6a09_e667))
+}
+
 /// State of cell (x, y) under a surface seed.
 pub fn cell_state(x: u32, y: u32, seed: u32) -> CellState {
-    let mut a = x;
+    cell_state_in_row(x, y, row_key(y, seed), seed)
+}
+
+/// The same with the row's [`row_key`].
+pub fn cell_state_in_row(x: u32, y: u32, key: u32, seed: u32) -> CellState {
+    let mut a = x.wrapping_add(key);
     let mut b = y;
-    a = a.wrapping_add(mix_bits(b.wrapping_add(seed).wrapping_add(0x6a09_e667)));
     b = b.wrapping_add(mix_bits(a.wrapping_add(0x3c6e_f372)));
     a = a.wrapping_add(mix_bits(b.wrapping_add(seed).wrapping_add(0x510e_527f)));
     b = b.wrapping_add(mix_bits(a.wrapping_add(0x9b05_688c)));

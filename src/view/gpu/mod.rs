@@ -4,6 +4,6 @@ mod compute;
 mod device;
 mod resources;
 
-pub use compute::answer;
+pub use compute::{answer, read_back};
 pub use device::{Gpu, GpuError, Wish};
 pub use resources::{GpuTexture, ResourceSet, Resources};

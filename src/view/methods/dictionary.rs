@@ -1,6 +1,6 @@
 //! A slope dictionary on the GPU: `bind_dictionary.wgsl`.
 
-use crate::gpu::{Gpu, GpuTexture, ResourceSet, Resources};
+use crate::gpu::{Gpu, ResourceSet, Resources};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use glint_bake_core::dictionary::tables::Dictionary;
@@ -32,18 +32,20 @@ pub fn upload(gpu: &Gpu, dictionary: &Dictionary, colours: &[Vec3]) -> Resources
         lobe_area: tables.lobe_area,
         unused: 0.0,
     };
-    let shape = dictionary.shape();
-    let texture = GpuTexture {
-        format: wgpu::TextureFormat::R16Float,
-        size: [shape.width, shape.height],
-        layers: 1,
-        mips: 1,
-        dimension: wgpu::TextureViewDimension::D2,
-    };
     let colours: Vec<[f32; 4]> = colours.iter().map(|colour| colour.extend(1.0).to_array()).collect();
     let mut set = ResourceSet::default();
     set.uniform(gpu, bytemuck::bytes_of(&uniform));
-    set.texture(gpu, texture, false, &dictionary.payload());
+    set.storage(gpu, bytemuck::cast_slice(&pairs(dictionary)));
     set.storage(gpu, bytemuck::cast_slice(&colours));
     set.finish(gpu)
+}
+
+/// Each texel with the next of its row, the last with itself: the first in the lower half of a word.
+fn pairs(dictionary: &Dictionary) -> Vec<u32> {
+    let mut words = Vec::with_capacity(dictionary.bits.len());
+    for row in dictionary.bits.chunks_exact(dictionary.options.entries as usize) {
+        let next = row.iter().skip(1).chain(row.last());
+        words.extend(row.iter().zip(next).map(|(&own, &next)| u32::from(own) | u32::from(next) << 16));
+    }
+    words
 }

@@ -5,13 +5,15 @@ struct DictionaryData {
 }
 
 @group(1) @binding(0) var<uniform> dictionary: DictionaryData;
-// Section SDTB as it is in the pack: R16Float, entries x (levels * marginals).
-@group(1) @binding(1) var dictionary_table: texture_2d<f32>;
+// Section SDTB as pairs of half floats: each texel and the next of its row, so that a look-up is one load.
+@group(1) @binding(1) var<storage, read> dictionary_table: array<u32>;
 // Glint colours, linear RGB and one unused; at least one element.
 @group(1) @binding(2) var<storage, read> dictionary_colours: array<vec4f>;
 
-fn glint_dictionary_texel(entry: u32, row: u32) -> f32 {
-    return textureLoad(dictionary_table, vec2u(entry, row), 0).r;
+fn glint_dictionary_filtered(row: u32, place: f32) -> f32 {
+    let low = floor(place);
+    let pair = unpack2x16float(dictionary_table[row * dictionary.tables.entries + u32(low)]);
+    return pair.x + (pair.y - pair.x) * (place - low);
 }
 
 fn glint_dictionary_colour(index: u32) -> vec3f {

@@ -3,7 +3,9 @@
 // Twin of glint-bake-core dictionary/{cells,eval,brdf}.rs, where deviations from the paper are derived.
 //
 // Accessors that the including program defines:
-//   fn glint_dictionary_texel(entry: u32, row: u32) -> f32   texel of the table (section SDTB), row level * marginals + marginal
+//   fn glint_dictionary_filtered(row: u32, place: f32) -> f32
+//       row `level * marginals + marginal` of the table (section SDTB) at `place` texels from the centre of its first one,
+//       linearly filtered and clamped to the edges
 //   fn glint_dictionary_colour(index: u32) -> vec3f          glint colour, linear RGB; called only if material.colours > 0
 
 const GLINT_TARGET_BECKMANN: u32 = 0u;
@@ -97,6 +99,18 @@ struct GlintLevelWindow {
     det: f32,
     first_row: i32,
     last_row: i32,
+}
+
+// A slope as all cells see it.
+struct GlintSlopeQuery {
+    // Slope in the dictionary's plane, before the cell's rotation.
+    in_dict: vec2f,
+    // Squared slope in units of the dictionary's roughness.
+    q_dict: f32,
+    // From the dictionary's density to that of the material.
+    jacobian: f32,
+    // The smooth target.
+    smooth_sdf: f32,
 }
 
 struct GlintCellSdf {
@@ -211,15 +225,8 @@ fn glint_marginal(tables: GlintDictionaryTables, index: u32, level: u32, x: f32)
     if x >= tables.domain {
         return 0.0;
     }
-    let t = clamp(x * tables.inv_spacing - 0.5, 0.0, f32(tables.entries - 1u));
-    let low = floor(t);
-    let f = t - low;
-    let row = level * tables.marginals + index;
-    let b0 = u32(low);
-    let b1 = min(b0 + 1u, tables.entries - 1u);
-    let v0 = glint_dictionary_texel(b0, row);
-    let v1 = glint_dictionary_texel(b1, row);
-    return v0 + (v1 - v0) * f;
+    let place = clamp(x * tables.inv_spacing - 0.5, 0.0, f32(tables.entries - 1u));
+    return glint_dictionary_filtered(level * tables.marginals + index, place);
 }
 
 // Level for n facets a cell before rounding, 1/2 log2 n.
@@ -233,7 +240,7 @@ fn glint_pick(count: u32, bits: u32) -> u32 {
     return ((bits >> 16u) * count) >> 16u;
 }
 
-// Colour of a cell's glint: its own while a facet or less is lit, the mean of all where many are.
+// Colour of a cell's glint, of a material that has colours: its own while a facet or less is lit, the mean of all where many are.
 fn glint_colour(
     tables: GlintDictionaryTables,
     material: GlintDictionaryMaterial,
@@ -241,9 +248,6 @@ fn glint_colour(
     level: u32,
     q_dict: f32,
 ) -> vec3f {
-    if material.colours == 0u {
-        return vec3f(1.0);
-    }
     let own = glint_dictionary_colour(glint_pick(material.colours, bits));
     let density = exp(-q_dict) / (GLINT_PI * tables.alpha_dict * tables.alpha_dict);
     let lit = exp2(2.0 * (f32(level) + 1.0)) * tables.lobe_area * density;
@@ -251,30 +255,12 @@ fn glint_colour(
     return material.mean_colour + (own - material.mean_colour) * share;
 }
 
-// Slope distribution of one cell (Eq. 11). x and y are those of the cell's first cell of level 0 (Eq. 8).
-fn glint_cell_sdf(
+// The query for a slope of a material.
+fn glint_slope_query(
     tables: GlintDictionaryTables,
     material: GlintDictionaryMaterial,
-    x: u32,
-    y: u32,
-    facet_level: f32,
     slope: vec2f,
-) -> GlintCellSdf {
-    let state = glint_cell_state(x, y, material.seed);
-    if glint_draw_uniform(state, GLINT_DRAW_COVERAGE) >= material.relative_area {
-        return GlintCellSdf(vec3f(0.0), 0.0);
-    }
-    var wished = facet_level;
-    if material.density_randomisation > 0.0 {
-        let radius = sqrt(-2.0 * log(1.0 - glint_draw_uniform(state, GLINT_DRAW_DENSITY_RADIUS)));
-        let normal = radius * cos(2.0 * GLINT_PI * glint_draw_uniform(state, GLINT_DRAW_DENSITY_ANGLE));
-        wished += material.density_randomisation * normal;
-    }
-    let level = u32(clamp(floor(wished + 0.5), 0.0, f32(tables.levels)));
-    if level == tables.levels {
-        return GlintCellSdf(material.mean_colour * glint_smooth_sdf(material, slope), 1.0);
-    }
-
+) -> GlintSlopeQuery {
     let v = glint_scaled_slope(material, slope);
     let q = v.x * v.x + v.y * v.y;
     var stretch = tables.alpha_dict;
@@ -286,15 +272,45 @@ fn glint_cell_sdf(
         q_dict = q * ratio;
         jacobian /= 1.0 + q;
     }
+    return GlintSlopeQuery(v * stretch, q_dict, jacobian, glint_smooth_sdf(material, slope));
+}
+
+// Slope distribution of one cell (Eq. 11). `state` is that of the cell's first cell of level 0 (Eq. 8).
+fn glint_cell_sdf(
+    tables: GlintDictionaryTables,
+    material: GlintDictionaryMaterial,
+    state: GlintCellState,
+    facet_level: f32,
+    query: GlintSlopeQuery,
+) -> GlintCellSdf {
+    if material.relative_area < 1.0 {
+        if glint_draw_uniform(state, GLINT_DRAW_COVERAGE) >= material.relative_area {
+            return GlintCellSdf(vec3f(0.0), 0.0);
+        }
+    }
+    var wished = facet_level;
+    if material.density_randomisation > 0.0 {
+        let radius = sqrt(-2.0 * log(1.0 - glint_draw_uniform(state, GLINT_DRAW_DENSITY_RADIUS)));
+        let normal = radius * cos(2.0 * GLINT_PI * glint_draw_uniform(state, GLINT_DRAW_DENSITY_ANGLE));
+        wished += material.density_randomisation * normal;
+    }
+    let level = u32(clamp(floor(wished + 0.5), 0.0, f32(tables.levels)));
+    if level == tables.levels {
+        return GlintCellSdf(material.mean_colour * query.smooth_sdf, 1.0);
+    }
+
     let angle = 2.0 * GLINT_PI * glint_draw_uniform(state, GLINT_DRAW_ROTATION);
     let sine = sin(angle);
     let cosine = cos(angle);
-    let px = stretch * (cosine * v.x + sine * v.y);
-    let py = stretch * (cosine * v.y - sine * v.x);
+    let px = cosine * query.in_dict.x + sine * query.in_dict.y;
+    let py = cosine * query.in_dict.y - sine * query.in_dict.x;
     let i = glint_pick(tables.marginals, glint_draw_bits(state, GLINT_DRAW_MARGINAL_X));
     let j = glint_pick(tables.marginals, glint_draw_bits(state, GLINT_DRAW_MARGINAL_Y));
-    let sdf = glint_marginal(tables, i, level, abs(px)) * glint_marginal(tables, j, level, abs(py)) * jacobian;
-    let colour = glint_colour(tables, material, glint_draw_bits(state, GLINT_DRAW_COLOUR), level, q_dict);
+    let sdf = glint_marginal(tables, i, level, abs(px)) * glint_marginal(tables, j, level, abs(py)) * query.jacobian;
+    if material.colours == 0u {
+        return GlintCellSdf(vec3f(sdf), 1.0);
+    }
+    let colour = glint_colour(tables, material, glint_draw_bits(state, GLINT_DRAW_COLOUR), level, query.q_dict);
     return GlintCellSdf(colour * sdf, 1.0);
 }
 
@@ -305,12 +321,12 @@ fn glint_level_sdf(
     footprint: GlintPixelFootprint,
     position: vec2f,
     level: u32,
-    slope: vec2f,
+    query: GlintSlopeQuery,
 ) -> GlintSlopeSum {
     let count_level = glint_facet_level(tables, material, level);
     let surely_smooth = count_level - 6.0 * material.density_randomisation >= f32(tables.levels) - 0.5;
     if surely_smooth && material.relative_area >= 1.0 {
-        return GlintSlopeSum(material.mean_colour * glint_smooth_sdf(material, slope), 1.0, 0u);
+        return GlintSlopeSum(material.mean_colour * query.smooth_sdf, 1.0, 0u);
     }
     let window = glint_level_window(footprint, position, level);
     var sdf = vec3f(0.0);
@@ -319,11 +335,13 @@ fn glint_level_sdf(
     var cells = 0u;
     for (var row = window.first_row; row <= window.last_row; row++) {
         let span = glint_row_span(window, row);
+        let y = u32(window.base.y + row) << level;
+        let key = glint_row_key(y, material.seed);
         for (var column = span.x; column <= span.y; column++) {
             let weight = glint_cell_weight(window, column, row);
             let x = u32(window.base.x + column) << level;
-            let y = u32(window.base.y + row) << level;
-            let cell = glint_cell_sdf(tables, material, x, y, count_level, slope);
+            let state = glint_cell_state_in_row(x, y, key, material.seed);
+            let cell = glint_cell_sdf(tables, material, state, count_level, query);
             sdf += cell.sdf * weight;
             coverage += cell.covered * weight;
             total += weight;
@@ -346,8 +364,9 @@ fn glint_patch_sdf(
     let fine = min(floor(footprint.lod), f32(GLINT_MAX_CELL_LEVEL - 1u));
     let blend = footprint.lod - fine;
     let position = pixel.position * cells_per_unit;
-    let a = glint_level_sdf(tables, material, footprint, position, u32(fine), slope);
-    let b = glint_level_sdf(tables, material, footprint, position, u32(fine) + 1u, slope);
+    let query = glint_slope_query(tables, material, slope);
+    let a = glint_level_sdf(tables, material, footprint, position, u32(fine), query);
+    let b = glint_level_sdf(tables, material, footprint, position, u32(fine) + 1u, query);
     return GlintSlopeSum(
         a.sdf + (b.sdf - a.sdf) * blend,
         a.coverage + (b.coverage - a.coverage) * blend,

@@ -18,11 +18,20 @@ fn glint_mix_bits(value: u32) -> u32 {
     return v;
 }
 
+// What all cells of row `y` share: the first round.
+fn glint_row_key(y: u32, seed: u32) -> u32 {
+    return glint_mix_bits(y + seed + 0x6a09e667u);
+}
+
 // State of cell (x, y) under a surface seed.
 fn glint_cell_state(x: u32, y: u32, seed: u32) -> GlintCellState {
-    var a = x;
+    return glint_cell_state_in_row(x, y, glint_row_key(y, seed), seed);
+}
+
+// The same with the row's glint_row_key.
+fn glint_cell_state_in_row(x: u32, y: u32, key: u32, seed: u32) -> GlintCellState {
+    var a = x + key;
     var b = y;
-    a += glint_mix_bits(b + seed + 0x6a09e667u);
     b += glint_mix_bits(a + 0x3c6ef372u);
     a += glint_mix_bits(b + seed + 0x510e527fu);
     b += glint_mix_bits(a + 0x9b05688cu);

@@ -39,6 +39,9 @@ modules! {
     "query_dictionary" needs ["bind_dictionary"];
     "view_scene" needs [];
     "view_surface" needs ["view_scene", "glint_hash"];
+    "view_accumulate" needs [];
+    "view_present" needs [];
+    "shade_environment_none" needs ["view_scene"];
     "shade_smooth" needs ["view_scene", "glint_brdf"];
     "shade_dictionary" needs ["view_scene", "glint_brdf", "bind_dictionary"];
     "shade_rect_points" needs ["view_scene"];

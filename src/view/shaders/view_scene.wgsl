@@ -39,9 +39,10 @@ struct ViewScene {
     environment_from_world: mat3x3f,
     // Factor on the environment's radiance.
     environment_gain: f32,
-    // Exposed part of the picture: x from .. to, in pixels.
-    split_from: f32,
-    split_to: f32,
+    // Half the picture's width and height at distance 1.
+    half_size: vec2f,
+    // Columns: camera's right, up and back in the world.
+    world_from_camera: mat3x3f,
 }
 
 // One for all methods; each reads what it has.
@@ -68,7 +69,7 @@ struct ViewMaterial {
     texels_per_unit: f32,
     // Lobes of directional roughness of area lights, 0 to 9.
     lobes: u32,
-    // Factor on the density of the reference's footprint: standard deviation of a pixel, in pixels.
+    // Standard deviation of the Gaussian that a pixel sees, in pixels.
     pixel_sigma: f32,
     // Switches of a method, see its shade file.
     switches: u32,

@@ -1,0 +1,18 @@
+//! Pictures of a scene: programs, passes and targets.
+
+mod accumulate;
+mod full_screen;
+mod picture;
+mod pipelines;
+mod present;
+mod renderer;
+mod shown;
+mod targets;
+mod timing;
+mod uniforms;
+
+pub use picture::{Picture, picture};
+pub use present::{Display, Overlay, ToneMapping};
+pub use renderer::{Compare, Renderer, Side, View};
+pub use shown::{Method, Shown};
+pub use uniforms::{Camera, Environment, Lights, Material, PointLight, RectLight, Scene, Sun};
