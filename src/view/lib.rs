@@ -2,7 +2,9 @@
 //!
 //! No flags and no files but meshes: the program around it is `src/bin/glint-view.rs`.
 
+pub mod bench;
 pub mod gpu;
 pub mod methods;
 pub mod render;
 pub mod scene;
+pub mod settings;

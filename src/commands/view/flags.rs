@@ -1,0 +1,216 @@
+//! The command line of glint-view. It is compiled into every build, so that manual pages and completions are whole.
+
+use crate::cli::values;
+use clap::ValueEnum;
+use std::path::PathBuf;
+
+/// Flags of glint-view.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Args {
+    /// Packs to show; what all of them hold can be compared
+    #[arg(value_name = "PACK", required = true)]
+    pub packs: Vec<PathBuf>,
+    /// List what the packs hold that can be shown, and the adapter
+    #[arg(long)]
+    pub list: bool,
+    #[command(flatten)]
+    pub picture: PictureFlags,
+    #[command(flatten)]
+    pub view: ViewFlags,
+    #[command(flatten)]
+    pub scene: SceneFlags,
+    #[command(flatten)]
+    pub material: MaterialFlags,
+    /// Most bytes to read and to decompress a pack, as in 512M
+    #[arg(long, value_name = "BYTES", default_value = "4G", value_parser = values::bytes)]
+    pub max_memory: u64,
+}
+
+/// Flags of work without a window.
+#[derive(clap::Args, Clone, Debug)]
+#[command(next_help_heading = "Without a window")]
+pub struct PictureFlags {
+    /// Write a picture (PNG) and open no window
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["turntable", "bench", "list"])]
+    pub headless: Option<PathBuf>,
+    /// Write pictures from all around, --frames of them, into this folder
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["bench", "list"])]
+    pub turntable: Option<PathBuf>,
+    /// Print the time of a frame of each method over that of its smooth baseline, and its error
+    #[arg(long, conflicts_with = "list")]
+    pub bench: bool,
+    /// Pictures of --turntable; frames of --bench; with a window, frames until it closes
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub frames: Option<u32>,
+    /// Frames that a picture is the mean of, for smooth edges and for references
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub samples: u32,
+    /// Pixels of pictures and of the window
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]
+    pub size: (u32, u32),
+    /// Use the adapter whose name holds this
+    #[arg(long, value_name = "NAME")]
+    pub adapter: Option<String>,
+}
+
+/// Flags of what is shown.
+#[derive(clap::Args, Clone, Debug)]
+#[command(next_help_heading = "View")]
+pub struct ViewFlags {
+    /// What to show, as --list names it: a method, or METHOD:NAME [default: the first of the list]
+    #[arg(long, value_name = "METHOD")]
+    pub method: Option<String>,
+    /// What to compare it with: another entry of --list, or reference
+    #[arg(long, value_name = "METHOD")]
+    pub against: Option<String>,
+    /// How to compare
+    #[arg(long, value_name = "HOW", default_value = "split", requires = "against")]
+    pub compare: CompareWhen,
+    /// Show the reference in place of the method
+    #[arg(long, conflicts_with = "against")]
+    pub reference: bool,
+    /// False colours in place of radiance
+    #[arg(long, value_name = "WHAT", default_value = "none")]
+    pub overlay: OverlayKind,
+    /// Exposure in stops
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_hyphen_values = true, value_parser = values::finite)]
+    pub exposure: f32,
+    /// From radiance to what a display can show
+    #[arg(long, value_name = "CURVE", default_value = "filmic")]
+    pub tone: Tone,
+    /// Another seed every frame, so that the mean over --samples is that over surfaces
+    #[arg(long)]
+    pub vary_seed: bool,
+}
+
+/// Flags of the scene.
+#[derive(clap::Args, Clone, Debug)]
+#[command(next_help_heading = "Scene")]
+pub struct SceneFlags {
+    /// Shape to draw
+    #[arg(long, value_name = "SHAPE", default_value = "plane")]
+    pub shape: ShapeKind,
+    /// Draw this mesh (.glb, .gltf, .obj) instead
+    #[arg(long, value_name = "FILE", conflicts_with = "shape")]
+    pub mesh: Option<PathBuf>,
+    /// Camera as azimuth,elevation,distance or azimuth,elevation,distance,x,y,z: degrees, then what it looks at
+    #[arg(long, value_name = "CAMERA", allow_hyphen_values = true)]
+    pub camera: Option<String>,
+    /// Lights that are on [default: the rectangle for area lights, the environment for environments, else the sun]
+    #[arg(long, value_name = "LIGHT", value_delimiter = ',')]
+    pub light: Vec<LightKind>,
+    /// Direction towards the sun
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::direction)]
+    pub sun: Option<[f32; 3]>,
+    /// Turn of the environment around the vertical axis, in degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_hyphen_values = true, value_parser = values::finite)]
+    pub turn: f32,
+    /// Surface units on one unit of the mesh's uv
+    #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = values::positive)]
+    pub uv_scale: f64,
+}
+
+/// Flags of the material; what is not given is what the pack was baked with.
+#[derive(clap::Args, Clone, Debug)]
+#[command(next_help_heading = "Material")]
+pub struct MaterialFlags {
+    /// Roughness α, the same along both axes, or along each
+    #[arg(long, value_name = "A[,B]", value_delimiter = ',', num_args = 1..=2, value_parser = values::positive)]
+    pub alpha: Vec<f64>,
+    /// Distribution of slopes that dictionaries converge to
+    #[arg(long, value_name = "TARGET")]
+    pub target: Option<TargetKind>,
+    /// Facets on one surface unit squared
+    #[arg(long, value_name = "N", value_parser = values::positive)]
+    pub density: Option<f64>,
+    /// Share of the surface that glints, 0 to 1
+    #[arg(long, value_name = "SHARE", value_parser = values::reflectance)]
+    pub relative_area: Option<f32>,
+    /// Standard deviation of a cell's level of density
+    #[arg(long, value_name = "LEVELS", value_parser = values::reflectance)]
+    pub density_randomisation: Option<f32>,
+    /// Largest ratio of the footprint's axes, 1 to 16
+    #[arg(long, value_name = "RATIO", value_parser = values::positive)]
+    pub max_anisotropy: Option<f64>,
+    /// Intrinsic roughness of NDF maps and lobes: standard deviation of projected normals
+    #[arg(long, value_name = "SIGMA", value_parser = values::positive)]
+    pub intrinsic_roughness: Option<f64>,
+    /// Texels of the map on one surface unit
+    #[arg(long, value_name = "N", value_parser = values::positive)]
+    pub texels_per_unit: Option<f64>,
+    /// Reflectance at normal incidence, linear RGB
+    #[arg(long, value_name = "R,G,B", value_parser = values::reflectance3)]
+    pub f0: Option<[f32; 3]>,
+    /// Colour of glints, linear RGB; may be given more than once
+    #[arg(long, value_name = "R,G,B", value_parser = values::reflectance3)]
+    pub colour: Vec<[f32; 3]>,
+    /// Lobes of directional roughness of area lights, 0 to 9
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=9))]
+    pub lobes: Option<u32>,
+    /// Surfaces with different seeds have different glints
+    #[arg(long, value_name = "SEED")]
+    pub seed: Option<u32>,
+    /// Exchange the layers of two-layer materials
+    #[arg(long)]
+    pub swap_layers: bool,
+}
+
+/// How two sides are put together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CompareWhen {
+    /// Left and right of a line
+    Split,
+    /// Relative difference in false colours
+    Error,
+}
+
+/// False colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum OverlayKind {
+    /// None
+    None,
+    /// Standard deviation of the footprint in texels
+    Footprint,
+    /// Level of detail that is read
+    Lod,
+}
+
+/// Tone mapping.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Tone {
+    /// A filmic curve
+    Filmic,
+    /// Clamped at white
+    Linear,
+}
+
+/// Shapes by formula.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ShapeKind {
+    /// A horizontal square
+    Plane,
+    /// A sphere
+    Sphere,
+}
+
+/// Lights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LightKind {
+    /// Directional light
+    Sun,
+    /// Points
+    Points,
+    /// Rectangle
+    Rect,
+    /// The environment of a pack
+    Environment,
+}
+
+/// Targets of dictionaries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TargetKind {
+    /// Beckmann
+    Beckmann,
+    /// GGX
+    Ggx,
+}
