@@ -100,9 +100,8 @@ fn error_of(
     let found = renderer.radiance(gpu, method, 0)?;
     picture(gpu, renderer, reference, samples)?;
     let truth = renderer.radiance(gpu, reference, 0)?;
-    let luminance = |pixel: &[f32; 4]| {
-        f64::from(pixel[0]) * 0.2126 + f64::from(pixel[1]) * 0.7152 + f64::from(pixel[2]) * 0.0722
-    };
+    let luminance =
+        |pixel: &[f32; 4]| f64::from(pixel[0]) * 0.2126 + f64::from(pixel[1]) * 0.7152 + f64::from(pixel[2]) * 0.0722;
     let mut difference = 0.0;
     let mut sum = 0.0;
     for (a, b) in found.iter().zip(&truth) {

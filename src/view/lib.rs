@@ -8,3 +8,4 @@ pub mod methods;
 pub mod render;
 pub mod scene;
 pub mod settings;
+pub mod window;

@@ -11,8 +11,8 @@ mod targets;
 mod timing;
 mod uniforms;
 
-pub use picture::{Picture, picture};
+pub use picture::{Picture, picture, read_picture};
 pub use present::{Display, Overlay, ToneMapping};
 pub use renderer::{Compare, Renderer, Side, View};
 pub use shown::{Method, Shown};
-pub use uniforms::{Camera, Environment, Lights, Material, PointLight, RectLight, Scene, Sun};
+pub use uniforms::{Camera, Environment, Lights, MAX_POINT_LIGHTS, Material, PointLight, RectLight, Scene, Sun};
