@@ -74,7 +74,15 @@ impl Surface {
             gpu.checked("window", || self.surface.configure(&gpu.device, &self.config))?;
             self.stale = false;
         }
-        Ok(match self.surface.get_current_texture() {
+        let texture = self.surface.get_current_texture();
+        if !matches!(texture, wgpu::CurrentSurfaceTexture::Success(_)) {
+            // The loss of a device is told while it is polled, and a lost one has no textures.
+            gpu.device.poll(wgpu::PollType::Poll).ok();
+            if let Some(reason) = gpu.lost() {
+                return Err(GpuError::Failed(reason));
+            }
+        }
+        Ok(match texture {
             wgpu::CurrentSurfaceTexture::Success(texture) => Acquired::Texture(texture),
             wgpu::CurrentSurfaceTexture::Suboptimal(texture) => {
                 self.stale = true;
@@ -87,9 +95,6 @@ impl Surface {
                 Acquired::Again
             }
             wgpu::CurrentSurfaceTexture::Lost => {
-                if let Some(reason) = gpu.lost() {
-                    return Err(GpuError::Failed(reason));
-                }
                 self.surface = create(&gpu.instance, window)?;
                 self.stale = true;
                 Acquired::Again
