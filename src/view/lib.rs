@@ -9,3 +9,4 @@ pub mod render;
 pub mod scene;
 pub mod settings;
 pub mod subjects;
+pub mod window;

@@ -11,8 +11,10 @@ mod targets;
 mod timing;
 mod uniforms;
 
-pub use picture::{Picture, picture};
+pub use picture::{Picture, picture, read_picture};
 pub use present::{Display, Overlay, ToneMapping};
 pub use renderer::{Compare, Renderer, Side, View};
 pub use shown::{LightKind, Method, Shown};
-pub use uniforms::{Camera, Environment, Lights, Material, PointLight, RectLight, SWAP_LAYERS, Scene, Sun};
+pub use uniforms::{
+    Camera, Environment, Lights, MAX_POINT_LIGHTS, Material, PointLight, RectLight, SWAP_LAYERS, Scene, Sun,
+};

@@ -27,5 +27,10 @@ pub fn picture(gpu: &Gpu, renderer: &mut Renderer, view_of: &View, frames: u32) 
         // Software adapters queue whole frames in memory.
         gpu.wait()?;
     }
-    Ok(Picture { size: view_of.size, rgba: texture_bytes(gpu, &target, 4)? })
+    read_picture(gpu, &target)
+}
+
+/// What a texture of four bytes a texel holds; waits for the device.
+pub fn read_picture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Picture, GpuError> {
+    Ok(Picture { size: [texture.width(), texture.height()], rgba: texture_bytes(gpu, texture, 4)? })
 }

@@ -51,7 +51,7 @@ impl Part {
         self.corners.len() / 3
     }
 
-    pub fn positions(&self) -> impl Iterator<Item = Vec3> {
+    pub fn positions(&self) -> impl Iterator<Item = Vec3> + Clone {
         self.corners.iter().map(|corner| corner.position)
     }
 

@@ -91,11 +91,11 @@ impl fmt::Display for Placement {
 impl Orbit {
     /// Looks at all of `bounds` from a little above.
     pub fn fit(bounds: Bounds) -> Orbit {
-        let radius = bounds.radius().max(1.0e-6);
+        let radius = bounds.radius.max(1.0e-6);
         Orbit {
             target: bounds.centre(),
-            // The sphere around it touches the upper and lower edge of the picture.
-            distance: radius / (0.5 * FIELD_OF_VIEW).sin(),
+            // A sphere around it, a tenth larger, touches the upper and lower edge of the picture.
+            distance: 1.1 * radius / (0.5 * FIELD_OF_VIEW).sin(),
             azimuth: 0.0,
             elevation: 25.0,
             field_of_view: FIELD_OF_VIEW,
@@ -268,7 +268,6 @@ mod tests {
         let size = Vec2::new(640.0, 360.0);
         let sphere = Mesh::sphere(32);
         assert!(sphere.hit(orbit.position(), orbit.ray(Vec2::new(320.0, 180.0), size)).is_some());
-        // The sphere's box is larger than it by the root of three.
         for edge in [Vec2::new(320.0, 1.0), Vec2::new(320.0, 359.0), Vec2::new(1.0, 180.0), Vec2::new(639.0, 180.0)] {
             assert!(sphere.hit(orbit.position(), orbit.ray(edge, size)).is_none(), "{edge}");
         }

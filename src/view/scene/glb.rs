@@ -244,11 +244,11 @@ impl Walk {
 
 /// Triangles of a list (mode 4), strip (5) or fan (6), section 3.7.2.1.
 fn triangles(order: &[u32], mode: u32) -> Vec<[u32; 3]> {
-    let all = order.windows(3).enumerate();
+    let all = order.windows(3);
     match mode {
         4 => order.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
-        5 => all.map(|(i, t)| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[0], t[2], t[1]] }).collect(),
-        _ => all.map(|(_, t)| [t[1], t[2], order[0]]).collect(),
+        5 => all.enumerate().map(|(i, t)| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[0], t[2], t[1]] }).collect(),
+        _ => all.map(|t| [t[1], t[2], order[0]]).collect(),
     }
 }
 

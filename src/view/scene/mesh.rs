@@ -47,6 +47,8 @@ pub struct Bounds {
     pub min: Vec3,
     /// Largest coordinates.
     pub max: Vec3,
+    /// Largest distance of a vertex from the middle.
+    pub radius: f32,
 }
 
 /// Why a mesh file gives no mesh. Each message names the file, what is wrong and what to do.
@@ -144,20 +146,20 @@ impl Mesh {
 }
 
 impl Bounds {
-    pub(super) fn of(positions: impl Iterator<Item = Vec3>) -> Bounds {
-        let none = Bounds { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
-        let bounds = positions.fold(none, |b, p| Bounds { min: b.min.min(p), max: b.max.max(p) });
-        if bounds.min.is_finite() { bounds } else { Bounds { min: Vec3::ZERO, max: Vec3::ZERO } }
+    /// Of these positions; all zero without any.
+    pub(super) fn of(positions: impl Iterator<Item = Vec3> + Clone) -> Bounds {
+        let Some(first) = positions.clone().next() else {
+            return Bounds { min: Vec3::ZERO, max: Vec3::ZERO, radius: 0.0 };
+        };
+        let (min, max) = positions.clone().fold((first, first), |(min, max), p| (min.min(p), max.max(p)));
+        let bounds = Bounds { min, max, radius: 0.0 };
+        let centre = bounds.centre();
+        Bounds { radius: positions.map(|p| p.distance(centre)).fold(0.0, f32::max), ..bounds }
     }
 
     /// The middle.
     pub fn centre(&self) -> Vec3 {
         0.5 * self.min + 0.5 * self.max
-    }
-
-    /// Half the diagonal: radius of a sphere around all of it.
-    pub fn radius(&self) -> f32 {
-        (0.5 * self.max - 0.5 * self.min).length()
     }
 }
 

@@ -52,7 +52,7 @@ pub(super) fn of_triangles(positions: &[Vec3], normals: &[Vec3], uv: &[Vec2]) ->
         normals,
         uv,
         middle: bounds.centre(),
-        scale: 1.0 / bounds.radius().max(1.0e-30),
+        scale: 1.0 / bounds.radius.max(1.0e-30),
         tangents: vec![None; positions.len()],
     };
     // There is no way to fail in this version of the crate; corners without an answer are filled in below.

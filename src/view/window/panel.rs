@@ -1,0 +1,242 @@
+//! The panel: method and material, comparison, display, lights, camera, and what is known of the frame.
+
+use super::controls::{Action, Controls, Mode};
+use super::lights;
+use crate::render::{Material, Method, Overlay, Shown, ToneMapping};
+use crate::settings::{Against, Settings};
+use egui::{Context, Slider, Ui};
+
+/// What the panel tells beside what it sets.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Facts {
+    /// Adapter in one line.
+    pub adapter: String,
+    /// Conversions and completions that the user should know of.
+    pub notes: Vec<String>,
+    /// Names of the meshes.
+    pub meshes: Vec<String>,
+    /// Pixels of the picture.
+    pub size: [u32; 2],
+    /// Frames in the mean.
+    pub frames: u32,
+    /// Seconds of each pass of the last frame; none where the device has no timestamps.
+    pub passes: Option<Vec<(&'static str, f64)>>,
+}
+
+/// Draws the panel; what it asks of the loop.
+pub(super) fn show(
+    context: &Context,
+    controls: &mut Controls,
+    settings: &mut Settings,
+    list: &[Shown],
+    facts: &Facts,
+) -> Option<Action> {
+    if !controls.panel {
+        return None;
+    }
+    let mut action = None;
+    // As high as the window allows: long panels scroll.
+    let height = (context.content_rect().height() - 60.0).clamp(60.0, 900.0);
+    egui::Window::new("glint-view")
+        .default_pos([8.0, 8.0])
+        .default_width(300.0)
+        .default_height(height)
+        .max_height(height)
+        .resizable(true)
+        .vscroll(true)
+        .show(context, |ui| {
+            ui.spacing_mut().slider_width = 120.0;
+            method(ui, settings, list);
+            section(ui, "Material", true, |ui| {
+                if let (Some(material), Some(shown)) =
+                    (settings.materials.get_mut(settings.shown), list.get(settings.shown))
+                {
+                    parameters(ui, shown.method, material);
+                }
+                ui.add(Slider::new(&mut settings.uv_scale, 0.01..=100.0).logarithmic(true).text("surface units / uv"));
+            });
+            section(ui, "Comparison", true, |ui| comparison(ui, controls, settings, list));
+            section(ui, "Display", true, |ui| display(ui, settings));
+            section(ui, "Lights", false, |ui| lights::show(ui, &mut settings.lights));
+            section(ui, "Camera and mesh", false, |ui| action = camera(ui, controls, settings, facts));
+            controls.times = section(ui, "Frame", false, |ui| frame(ui, facts));
+            ui.separator();
+            ui.horizontal(|ui| {
+                if ui.button("Save picture (S)").clicked() {
+                    action = Some(Action::Save);
+                }
+                if ui.button("Hide panel (H)").clicked() {
+                    controls.panel = false;
+                }
+            });
+            if !controls.message.is_empty() {
+                ui.label(&controls.message);
+            }
+        });
+    action
+}
+
+/// A part that can be closed; whether it is open.
+fn section(ui: &mut Ui, title: &str, open: bool, show: impl FnOnce(&mut Ui)) -> bool {
+    egui::CollapsingHeader::new(title).default_open(open).show(ui, show).body_returned.is_some()
+}
+
+fn name(shown: &Shown) -> String {
+    match shown.name.as_str() {
+        "" => shown.method.name().to_owned(),
+        name => format!("{}: {name}", shown.method.name()),
+    }
+}
+
+fn method(ui: &mut Ui, settings: &mut Settings, list: &[Shown]) {
+    for (index, shown) in list.iter().enumerate() {
+        let key = if index < 9 { format!("{}  ", index + 1) } else { String::new() };
+        ui.radio_value(&mut settings.shown, index, format!("{key}{}", name(shown)));
+    }
+    ui.checkbox(&mut settings.reference, "reference in its place (R)");
+}
+
+/// The parameters that a method reads.
+fn parameters(ui: &mut Ui, method: Method, material: &mut Material) {
+    ui.horizontal(|ui| {
+        ui.color_edit_button_rgb(&mut material.f0);
+        ui.label("reflectance at normal incidence F0");
+    });
+    let roughness = |ui: &mut Ui, material: &mut Material| {
+        for (alpha, axis) in material.alpha.iter_mut().zip(["tangent", "bitangent"]) {
+            ui.add(Slider::new(alpha, 0.001..=1.0).logarithmic(true).text(format!("roughness α, {axis}")));
+        }
+        ui.horizontal(|ui| {
+            ui.radio_value(&mut material.normal_target, 0, "Beckmann");
+            ui.radio_value(&mut material.normal_target, 1, "GGX");
+        });
+    };
+    match method {
+        Method::Smooth => roughness(ui, material),
+        Method::Dictionary => {
+            roughness(ui, material);
+            ui.add(Slider::new(&mut material.density, 1.0..=1.0e12).logarithmic(true).text("facets / unit²"));
+            ui.add(Slider::new(&mut material.relative_area, 0.0..=1.0).text("relative area"));
+            ui.add(Slider::new(&mut material.density_randomisation, 0.0..=10.0).text("density randomisation"));
+            ui.add(Slider::new(&mut material.max_anisotropy, 1.0..=64.0).logarithmic(true).text("largest anisotropy"));
+            ui.horizontal(|ui| {
+                ui.add(egui::DragValue::new(&mut material.seed));
+                ui.label("seed");
+            });
+        }
+    }
+}
+
+fn comparison(ui: &mut Ui, controls: &mut Controls, settings: &mut Settings, list: &[Shown]) {
+    ui.horizontal_wrapped(|ui| {
+        for (mode, label) in
+            [(Mode::None, "none"), (Mode::Split, "split"), (Mode::Ab, "A/B (space)"), (Mode::Error, "error")]
+        {
+            ui.radio_value(&mut controls.mode, mode, label);
+        }
+    });
+    let chosen = match controls.against {
+        Against::Other(index) => list.get(index).map_or_else(String::new, name),
+        Against::Reference | Against::Nothing => "its reference".to_owned(),
+    };
+    egui::ComboBox::from_label("against").selected_text(chosen).show_ui(ui, |ui| {
+        ui.selectable_value(&mut controls.against, Against::Reference, "its reference");
+        for (index, shown) in list.iter().enumerate() {
+            ui.selectable_value(&mut controls.against, Against::Other(index), name(shown));
+        }
+    });
+    match controls.mode {
+        Mode::None => {}
+        Mode::Split => {
+            ui.add(Slider::new(&mut controls.split, 0.0..=1.0).text("line"));
+        }
+        Mode::Ab => {
+            ui.horizontal(|ui| {
+                ui.radio_value(&mut controls.showing_b, false, "A, the method");
+                ui.radio_value(&mut controls.showing_b, true, "B, the other");
+            });
+        }
+        Mode::Error => {
+            ui.label("relative difference: 0 blue to 1 red");
+        }
+    }
+    ui.checkbox(&mut settings.vary_seed, "mean over seeds");
+}
+
+fn display(ui: &mut Ui, settings: &mut Settings) {
+    ui.add(Slider::new(&mut settings.exposure_stops, -10.0..=10.0).text("exposure, stops"));
+    ui.horizontal(|ui| {
+        ui.radio_value(&mut settings.tone, ToneMapping::Filmic, "filmic");
+        ui.radio_value(&mut settings.tone, ToneMapping::Linear, "linear");
+    });
+    egui::ComboBox::from_label("overlay (O)").selected_text(overlay_name(settings.overlay)).show_ui(ui, |ui| {
+        for overlay in [Overlay::None, Overlay::Footprint, Overlay::Lod] {
+            ui.selectable_value(&mut settings.overlay, overlay, overlay_name(overlay));
+        }
+    });
+    let [low, high] = settings.overlay.range();
+    match settings.overlay {
+        Overlay::None => {}
+        Overlay::Footprint => {
+            ui.label(format!("σ in texels: {} blue to {} red", low.exp2(), high.exp2()));
+        }
+        Overlay::Lod => {
+            ui.label(format!("level {low} (finest) blue to {high} red"));
+        }
+    }
+    ui.checkbox(&mut settings.antialias, "smooth edges, mean over frames");
+}
+
+fn overlay_name(overlay: Overlay) -> &'static str {
+    match overlay {
+        Overlay::None => "none",
+        Overlay::Footprint => "footprint",
+        Overlay::Lod => "level of detail",
+    }
+}
+
+fn camera(ui: &mut Ui, controls: &Controls, settings: &mut Settings, facts: &Facts) -> Option<Action> {
+    let mut action = None;
+    for (index, mesh) in facts.meshes.iter().enumerate() {
+        if ui.radio(controls.mesh == index, mesh).clicked() {
+            action = Some(Action::Mesh(index));
+        }
+    }
+    if ui.button("Fit to the mesh (F)").clicked() {
+        action = Some(Action::Frame);
+    }
+    let mut degrees = settings.camera.field_of_view.to_degrees();
+    if ui.add(Slider::new(&mut degrees, 5.0..=100.0).text("field of view, degrees")).changed() {
+        settings.camera.field_of_view = degrees.to_radians();
+    }
+    // What --camera takes, to be copied.
+    let text = settings.camera.placement().to_string();
+    ui.label(format!("--camera {text}"));
+    if ui.button("Copy").clicked() {
+        ui.ctx().copy_text(text);
+    }
+    ui.label("left drag orbits, right drag pans, wheel zooms to the mouse");
+    action
+}
+
+fn frame(ui: &mut Ui, facts: &Facts) {
+    ui.label(&facts.adapter);
+    ui.label(format!("{} × {} pixels, {} frames in the mean", facts.size[0], facts.size[1], facts.frames));
+    match &facts.passes {
+        None => {
+            ui.label("pass times: the adapter has no timestamps");
+        }
+        Some(passes) => {
+            egui::Grid::new("passes").show(ui, |ui| {
+                for (pass, seconds) in passes {
+                    ui.label(*pass);
+                    ui.label(format!("{:.2} ms", 1e3 * seconds));
+                    ui.end_row();
+                }
+            });
+        }
+    }
+    for note in &facts.notes {
+        ui.label(note);
+    }
+}
