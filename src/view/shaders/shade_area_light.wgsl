@@ -2,6 +2,10 @@
 // points and directions (GGX). The base roughness is material.alpha.x; material.lobes above 0 asks for roughness by
 // direction.
 
+// Whether material.lobes is obeyed. A pipeline that is made with false is for lobes of 0 and leaves out what directions take:
+// rasterisers on CPUs execute both sides of a branch.
+override AREA_LIGHT_DIRECTIONAL: bool = true;
+
 // Texels of the first mip on one surface unit.
 fn shade_area_light_scale() -> vec2f {
     return material.texels_per_unit * area_light.texel_scale;
@@ -72,9 +76,14 @@ fn shade_rect(point: ViewPoint) -> vec3f {
     if REFERENCE {
         return shade_area_light_rect_sample(point);
     }
-    let surface = shade_area_light_surface(point, material.lobes > 0u);
     let light = shade_area_light_rect(point);
-    return glint_surface_radiance(surface, material.alpha.x, point.view, material.f0, light, material.lobes);
+    if AREA_LIGHT_DIRECTIONAL {
+        let surface = shade_area_light_surface(point, material.lobes > 0u);
+        return glint_surface_radiance(surface, material.alpha.x, point.view, material.f0, light, material.lobes);
+    }
+    let surface = shade_area_light_surface(point, false);
+    let alpha = glint_convolve_alpha(material.alpha.x, surface.alpha);
+    return glint_isotropic_radiance(surface.normal, alpha, point.view, material.f0, light);
 }
 
 fn shade_lod(point: ViewPoint) -> f32 {
