@@ -17,6 +17,7 @@ mod normal_maps;
 mod plan;
 mod preview;
 mod report;
+mod shaders;
 mod surface;
 mod view;
 
@@ -63,6 +64,7 @@ enum Command {
     Preview(preview::Args),
     Export(export::Args),
     Generate(generate::Args),
+    Shaders(shaders::Args),
     Report(report::Args),
     Demo(demo::Args),
 }
@@ -78,6 +80,7 @@ pub fn bake(cli: Bake) -> Result<(), Failure> {
         Command::Preview(args) => preview::run(&args, terminal),
         Command::Export(args) => export::run(&args, terminal),
         Command::Generate(args) => generate::run(&args, terminal),
+        Command::Shaders(args) => shaders::run(&args, terminal),
         Command::Report(args) => report::run(&args, terminal),
         Command::Demo(args) => demo::run(&args, terminal),
     }
