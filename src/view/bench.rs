@@ -4,6 +4,7 @@ use crate::gpu::{Gpu, GpuError};
 use crate::render::{Camera, Compare, Method, Renderer, Shown, Side, View, picture};
 use crate::scene::Mesh;
 use crate::settings::{Against, Settings};
+use crate::subjects::Subjects;
 use glam::Vec3;
 
 /// How much is measured.
@@ -101,12 +102,12 @@ pub struct BenchRow {
     pub error: Option<f64>,
 }
 
-/// Measures the method of a setup against its baseline.
-pub fn measure(gpu: &Gpu, setup: &Setup, settings: BenchSettings) -> Result<BenchRow, GpuError> {
+/// Measures the method of a setup, one of `subjects`, against its baseline.
+pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSettings) -> Result<BenchRow, GpuError> {
     let Compare::Single(Side { shown, .. }) = &setup.view.compare else {
         return Err(GpuError::Failed("a bench has one side".into()));
     };
-    let renderer = &mut Renderer::new(gpu, &setup.mesh)?;
+    let renderer = &mut subjects.renderer(gpu, &setup.mesh)?;
     let of = |shown: &Shown, reference| View {
         compare: Compare::Single(Side { shown: shown.clone(), reference }),
         antialias: false,

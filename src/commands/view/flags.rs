@@ -53,6 +53,14 @@ pub struct PictureFlags {
     pub adapter: Option<String>,
 }
 
+impl PictureFlags {
+    /// Whether nothing that is asked for does without a window.
+    #[cfg(feature = "view")]
+    pub fn opens_window(&self, list: bool) -> bool {
+        !list && !self.bench && self.headless.is_none() && self.turntable.is_none()
+    }
+}
+
 /// Flags of what is shown.
 #[derive(clap::Args, Clone, Debug)]
 #[command(next_help_heading = "View")]

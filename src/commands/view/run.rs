@@ -16,7 +16,8 @@ use glint_view::render::{
 use glint_view::scene::{Mesh, MeshError, Orbit, Placement};
 use glint_view::settings::{Against, Layout, Settings};
 use glint_view::subjects::Subjects;
-use std::path::Path;
+use glint_view::window::{Hooks, Loaded, Start, WindowError};
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// Pictures of a turntable when --frames does not say.
@@ -29,34 +30,102 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     check_outputs(args)?;
     let limits = Limits { max_file_bytes: args.max_memory, max_raw_bytes: args.max_memory, ..Limits::default() };
     let reports: Vec<Report> = args.packs.iter().map(|path| Report::of_file(path, &limits)).collect();
-    let packs = reports.iter().map(Report::sound).collect::<Result<Vec<&Pack>, Failure>>()?;
+    reports.iter().try_for_each(|report| report.sound().map(|_| ()))?;
     let mesh = mesh_of(args, terminal)?;
-    let mut camera = Orbit::fit(mesh.bounds());
-    if let Some(placement) = placement {
-        camera.place(placement);
+    if args.picture.opens_window(args.list) {
+        return window(args, placement, reports, mesh, terminal);
     }
-
-    let gpu = Gpu::headless(&Wish { name: args.picture.adapter.clone() }).map_err(failure)?;
+    let gpu = Gpu::headless(&wish(args)).map_err(failure)?;
     terminal.detail(&format!("adapter: {}", gpu.adapter_line()));
-    let colours: Vec<Vec3> = args.material.colour.iter().map(|&colour| colour.into()).collect();
-    let subjects = Subjects::of_packs(&gpu, &packs, &colours).map_err(failure)?;
-    for note in &subjects.notes {
+    let subjects = upload(&gpu, &reports, &args.material).map_err(failure)?;
+    for note in subjects.notes() {
         terminal.say(note);
     }
     if args.list {
         return output::print(&list(&gpu, &subjects));
     }
+    let mut camera = Orbit::fit(mesh.bounds());
+    if let Some(placement) = placement {
+        camera.place(placement);
+    }
     let settings = settings(args, &subjects.shown, camera)?;
-    let mut renderer = Renderer::new(&gpu, &mesh).map_err(failure)?;
-    let size = [args.picture.size.0, args.picture.size.1];
+    if args.picture.bench {
+        return bench(args, &gpu, &subjects, &settings);
+    }
+    let mut renderer = subjects.renderer(&gpu, &mesh).map_err(failure)?;
     if let Some(path) = &args.picture.headless {
-        let view = settings.view(&subjects.shown, size);
+        let view = settings.view(&subjects.shown, size(args));
         return shoot(&gpu, &mut renderer, &view, args.picture.samples, path, terminal);
     }
-    if let Some(folder) = &args.picture.turntable {
-        return turntable(args, &gpu, &mut renderer, &subjects.shown, settings, folder, terminal);
+    let Some(folder) = &args.picture.turntable else { return Ok(()) };
+    turntable(args, &gpu, &mut renderer, &subjects.shown, settings, folder, terminal)
+}
+
+fn wish(args: &Args) -> Wish {
+    Wish { name: args.picture.adapter.clone() }
+}
+
+fn size(args: &Args) -> [u32; 2] {
+    [args.picture.size.0, args.picture.size.1]
+}
+
+/// Everything of the packs, which are sound, on a device.
+fn upload(gpu: &Gpu, reports: &[Report], flags: &MaterialFlags) -> Result<Subjects, GpuError> {
+    let packs: Vec<&Pack> = reports.iter().filter_map(Report::pack).collect();
+    let colours: Vec<Vec3> = flags.colour.iter().map(|&colour| colour.into()).collect();
+    Subjects::of_packs(gpu, &packs, &colours)
+}
+
+/// Opens a window on the packs and returns when it is closed.
+fn window(
+    args: &Args,
+    placement: Option<Placement>,
+    reports: Vec<Report>,
+    mesh: Mesh,
+    terminal: Terminal,
+) -> Result<(), Failure> {
+    let name = args.scene.mesh.as_deref().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
+    let mut meshes = vec![("plane".to_owned(), Mesh::plane(2.0)), ("sphere".to_owned(), Mesh::sphere(64))];
+    match (name, args.scene.shape) {
+        (Some(name), _) => meshes.insert(0, (name, mesh)),
+        (None, ShapeKind::Plane) => {}
+        (None, ShapeKind::Sphere) => meshes.swap(0, 1),
     }
-    bench(args, &gpu, &subjects.shown, &settings)
+    let (wishes, flags) = (args.clone(), args.material.clone());
+    let packs: Vec<String> = args.packs.iter().map(|path| path.display().to_string()).collect();
+    let start = Start {
+        title: format!("{} - glint-view", packs.join(" ")),
+        size: size(args),
+        wish: wish(args),
+        meshes,
+        load: Box::new(move |gpu| {
+            let subjects = upload(gpu, &reports, &flags)?;
+            Ok(Loaded { list: subjects.shown, environment: subjects.environment })
+        }),
+        prepare: Box::new(move |list, mut camera| {
+            if let Some(placement) = placement {
+                camera.place(placement);
+            }
+            settings(&wishes, list, camera).map_err(|failure| failure.message)
+        }),
+        save: Box::new(move |picture| save(picture, terminal)),
+        hooks: Hooks { frames: args.picture.frames, ..Hooks::default() },
+    };
+    glint_view::window::run(start).map_err(|error| match error {
+        WindowError::NoWindow(_) => Failure::new(Exit::Unsupported, error.to_string()),
+        WindowError::Settings(message) => Failure::usage(message),
+        WindowError::Gpu(error) => failure(error),
+    })
+}
+
+/// Saves a screenshot under the first free name.
+fn save(picture: &Picture, terminal: Terminal) -> Result<String, String> {
+    let free = (1..).map(|number| PathBuf::from(format!("glint-view-{number}.png"))).find(|path| !path.exists());
+    let path = free.ok_or("there is no free file name")?;
+    output::write(&path, &png(picture)).map_err(|failure| failure.message)?;
+    let said = format!("{}: written", path.display());
+    terminal.say(&said);
+    Ok(said)
 }
 
 fn failure(error: GpuError) -> Failure {
@@ -233,7 +302,7 @@ fn turntable(
     let start = settings.camera.azimuth;
     for index in 0..count {
         settings.camera.azimuth = start + 360.0 * index as f32 / count as f32;
-        let view = settings.view(list, [args.picture.size.0, args.picture.size.1]);
+        let view = settings.view(list, size(args));
         let path = folder.join(format!("{index:05}.png"));
         shoot(gpu, renderer, &view, args.picture.samples, &path, terminal)?;
     }
@@ -241,13 +310,13 @@ fn turntable(
 }
 
 /// Every entry on a wall that fills the picture, each in the light that it is made for.
-fn bench(args: &Args, gpu: &Gpu, list: &[Shown], settings: &Settings) -> Result<(), Failure> {
-    let size = [args.picture.size.0, args.picture.size.1];
+fn bench(args: &Args, gpu: &Gpu, subjects: &Subjects, settings: &Settings) -> Result<(), Failure> {
+    let size = size(args);
     let setup = BenchSettings { frames: args.picture.frames.unwrap_or(20), ..BenchSettings::default() };
     let mut rows = Vec::new();
-    for index in 0..list.len() {
-        for wall in Setup::of(list, index, settings, size) {
-            rows.push(measure(gpu, &wall, setup).map_err(failure)?);
+    for index in 0..subjects.shown.len() {
+        for wall in Setup::of(&subjects.shown, index, settings, size) {
+            rows.push(measure(gpu, subjects, &wall, setup).map_err(failure)?);
         }
     }
     output::print(&format!("{}, {} x {}\n\n{}", gpu.adapter_line(), size[0], size[1], table(&rows)))

@@ -8,12 +8,14 @@ use std::collections::HashMap;
 use std::mem::offset_of;
 
 /// What a pipeline is specialised for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Key {
     pub method: Method,
     pub lights: u32,
     pub reference: bool,
     pub overlay: u32,
+    /// Constants of the method, as bits of their values.
+    pub constants: Vec<(&'static str, u64)>,
 }
 
 /// Pipelines by what they are specialised for, and the shader modules of the methods.
@@ -41,8 +43,9 @@ impl Pipelines {
                 let module = gpu.shader(key.method.name(), &glint_shaders::compose(&files))?;
                 self.modules.insert(key.method, module);
             }
-            let pipeline = make(gpu, key, &self.modules[&key.method], [scene, &data.layout, &environment.layout])?;
-            self.pipelines.insert(key, pipeline);
+            let groups = [scene, &data.layout, &environment.layout];
+            let pipeline = make(gpu, &key, &self.modules[&key.method], groups)?;
+            self.pipelines.insert(key.clone(), pipeline);
         }
         Ok(&self.pipelines[&key])
     }
@@ -81,7 +84,7 @@ struct Drawing<'a> {
 
 fn make(
     gpu: &Gpu,
-    key: Key,
+    key: &Key,
     module: &wgpu::ShaderModule,
     groups: [&wgpu::BindGroupLayout; 3],
 ) -> Result<wgpu::RenderPipeline, GpuError> {
@@ -101,11 +104,12 @@ fn make(
         step_mode: wgpu::VertexStepMode::Vertex,
         attributes: &attributes,
     })];
-    let constants = [
+    let mut constants = vec![
         ("LIGHTS", f64::from(key.lights)),
         ("REFERENCE", f64::from(u8::from(key.reference))),
         ("OVERLAY", f64::from(key.overlay)),
     ];
+    constants.extend(key.constants.iter().map(|&(name, bits)| (name, f64::from_bits(bits))));
     Drawing { label: key.method.name(), module, groups, buffers: &buffers, covers: true }.pipeline(gpu, &constants)
 }
 

@@ -208,15 +208,18 @@ impl Renderer {
             material.seed = material.seed.wrapping_add(self.frames);
         }
         let group = scene_group(gpu, &self.scene_layout, &scene, &material);
+        let constants = side.shown.method.constants(&material);
         let key = Key {
             method: side.shown.method,
             lights: view_of.scene.lights.bits(),
             reference: side.reference,
             overlay: view_of.display.overlay.number(),
+            constants: constants.into_iter().map(|(name, value)| (name, value.to_bits())).collect(),
         };
         let data = &side.shown.data;
+        let lights = key.lights;
         let pipeline = self.pipelines.get(gpu, key, &self.scene_layout, data, &self.environment)?.clone();
-        let background = self.pipelines.background(gpu, key.lights, &self.scene_layout, &self.environment)?;
+        let background = self.pipelines.background(gpu, lights, &self.scene_layout, &self.environment)?;
         self.passes.push(if index == 0 { "surface" } else { "surface, right" });
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("surface"),

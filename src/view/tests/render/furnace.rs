@@ -2,7 +2,7 @@
 
 use crate::adapter::gpu;
 use crate::subjects::{index_of, mean_radiance, subjects, wall};
-use glint_view::render::{Method, Renderer, View};
+use glint_view::render::{Method, View};
 
 /// Seeds that are averaged.
 const SEEDS: u32 = 1024;
@@ -15,7 +15,7 @@ fn the_mean_over_seeds_is_the_smooth_brdf() {
         let index = index_of(&subjects, method);
         for density in densities {
             let (mesh, mut settings, view) = wall(&subjects, index, [48, 32]);
-            let mut renderer = Renderer::new(gpu, &mesh).unwrap();
+            let mut renderer = subjects.renderer(gpu, &mesh).unwrap();
             let camera = view.scene.camera;
             for material in &mut settings.materials {
                 material.density = density;

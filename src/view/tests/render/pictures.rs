@@ -3,7 +3,7 @@
 use crate::adapter::gpu;
 use crate::subjects::{camera, mean_radiance, subjects, wall};
 use glam::Vec3;
-use glint_view::render::{Overlay, Renderer, picture};
+use glint_view::render::{Overlay, picture};
 
 #[test]
 fn every_method_gives_light_and_the_same_bytes_twice() {
@@ -11,11 +11,11 @@ fn every_method_gives_light_and_the_same_bytes_twice() {
     let subjects = subjects(gpu);
     for index in 0..subjects.shown.len() {
         let (mesh, _, view) = wall(&subjects, index, [96, 64]);
-        let mut renderer = Renderer::new(gpu, &mesh).unwrap();
+        let mut renderer = subjects.renderer(gpu, &mesh).unwrap();
         let (mean, largest) = mean_radiance(gpu, &mut renderer, &view, 1);
         assert!(mean[1] > 0.0 && largest > 0.0, "{} is black", subjects.shown[index].method.name());
         let first = picture(gpu, &mut renderer, &view, 1).unwrap();
-        let mut other = Renderer::new(gpu, &mesh).unwrap();
+        let mut other = subjects.renderer(gpu, &mesh).unwrap();
         assert!(first == picture(gpu, &mut other, &view, 1).unwrap(), "{}", subjects.shown[index].method.name());
     }
 }
@@ -26,7 +26,7 @@ fn hard_views_have_no_pixel_without_a_number() {
     let subjects = subjects(gpu);
     for index in 0..subjects.shown.len() {
         let (mesh, _, mut view) = wall(&subjects, index, [64, 48]);
-        let mut renderer = Renderer::new(gpu, &mesh).unwrap();
+        let mut renderer = subjects.renderer(gpu, &mesh).unwrap();
         for height in [1e-6, 1e-3, 10.0, 30.0] {
             view.scene.camera = camera(height);
             mean_radiance(gpu, &mut renderer, &view, 1);

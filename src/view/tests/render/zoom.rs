@@ -2,7 +2,6 @@
 
 use crate::adapter::gpu;
 use crate::subjects::{camera, mean_radiance, subjects, wall};
-use glint_view::render::Renderer;
 
 /// Frames of the zoom, each this much farther away.
 const FRAMES: u32 = 48;
@@ -15,7 +14,7 @@ fn a_slow_zoom_does_not_pop() {
     for index in 0..subjects.shown.len() {
         let name = subjects.shown[index].method.name();
         let (mesh, _, mut view) = wall(&subjects, index, [160, 120]);
-        let mut renderer = Renderer::new(gpu, &mesh).unwrap();
+        let mut renderer = subjects.renderer(gpu, &mesh).unwrap();
         let mut before: Option<f64> = None;
         let mut worst = 0.0f64;
         for frame in 0..FRAMES {
