@@ -44,11 +44,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     if args.list {
         return output::print(&list(&gpu, &subjects));
     }
-    let mut camera = Orbit::fit(mesh.bounds());
-    if let Some(placement) = placement {
-        camera.place(placement);
-    }
-    let settings = settings(args, &subjects.shown, camera)?;
+    let settings = settings(args, &subjects.shown, Orbit::fit(mesh.bounds()), placement)?;
     if args.picture.bench {
         return bench(args, &gpu, &subjects, &settings);
     }
@@ -102,11 +98,8 @@ fn window(
             let subjects = upload(gpu, &reports, &flags)?;
             Ok(Loaded { list: subjects.shown, environment: subjects.environment })
         }),
-        prepare: Box::new(move |list, mut camera| {
-            if let Some(placement) = placement {
-                camera.place(placement);
-            }
-            settings(&wishes, list, camera).map_err(|failure| failure.message)
+        prepare: Box::new(move |list, camera| {
+            settings(&wishes, list, camera, placement).map_err(|failure| failure.message)
         }),
         save: Box::new(move |picture| save(picture, terminal)),
         hooks: Hooks { frames: args.picture.frames, ..Hooks::default() },
@@ -191,8 +184,12 @@ fn find(list: &[Shown], flag: &str, name: &str) -> Result<usize, Failure> {
     })
 }
 
-fn settings(args: &Args, list: &[Shown], camera: Orbit) -> Result<Settings, Failure> {
+/// What the flags ask for, through a camera that sees all of the mesh or is where `placement` says.
+fn settings(args: &Args, list: &[Shown], camera: Orbit, placement: Option<Placement>) -> Result<Settings, Failure> {
     let mut settings = Settings::new(list, camera);
+    if let Some(placement) = placement {
+        settings.camera.place(placement);
+    }
     if let Some(name) = &args.view.method {
         settings.shown = find(list, "--method", name)?;
     }

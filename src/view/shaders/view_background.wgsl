@@ -24,7 +24,7 @@ fn fragment(f: ViewBackground) -> @location(0) vec4f {
     }
     if (LIGHTS & VIEW_LIGHT_ROOM) != 0u {
         // Dimmer than it lights, so that the mesh stands out.
-        return vec4f(view_sky(direction) * 0.25, 0.0);
+        return vec4f(view_sky(direction) * 0.5, 0.0);
     }
     return vec4f(0.0);
 }
