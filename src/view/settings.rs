@@ -202,11 +202,11 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Bounds;
+    use crate::scene::Mesh;
 
     #[test]
     fn the_rectangle_radiates_towards_the_mesh() {
-        let bounds = Bounds { min: Vec3::splat(-1.0), max: Vec3::splat(1.0) };
+        let bounds = Mesh::sphere(8).bounds();
         let [a, b, _, d] = LightSettings::for_camera(&Orbit::fit(bounds)).rect.corners;
         // Counter-clockwise from where it radiates to: the normal points there.
         assert!((b - a).cross(d - a).dot(bounds.centre() - a) > 0.0);

@@ -92,10 +92,10 @@ impl fmt::Display for Placement {
 impl Orbit {
     /// Looks at all of `bounds` from a little above; at what is flat from nearer, so that it fills the picture's width.
     pub fn fit(bounds: Bounds) -> Orbit {
-        let radius = bounds.radius().max(1.0e-6);
+        let radius = bounds.radius.max(1.0e-6);
         let is_flat = bounds.max.y - bounds.min.y < 0.01 * radius;
-        // The sphere around it touches the upper and lower edge of the picture.
-        let distance = radius / (0.5 * FIELD_OF_VIEW).sin();
+        // A sphere around it, a tenth larger, touches the upper and lower edge of the picture.
+        let distance = 1.1 * radius / (0.5 * FIELD_OF_VIEW).sin();
         Orbit {
             target: bounds.centre(),
             distance: if is_flat { 0.6 * distance } else { distance },
