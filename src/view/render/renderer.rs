@@ -11,7 +11,6 @@ use crate::gpu::{Gpu, GpuError, ResourceSet, Resources, read_back};
 use crate::scene::Mesh;
 use glam::Vec2;
 use std::rc::Rc;
-use wgpu::util::DeviceExt;
 
 /// One of the pictures that are compared.
 #[derive(Clone, Debug)]
@@ -324,12 +323,9 @@ pub(super) fn texture_bytes(gpu: &Gpu, texture: &wgpu::Texture, texel_bytes: u32
 }
 
 fn mesh_buffers(gpu: &Gpu, mesh: &Mesh) -> MeshBuffers {
-    let buffer = |contents, usage| {
-        gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
-    };
     MeshBuffers {
-        vertices: buffer(bytemuck::cast_slice(&mesh.vertices), wgpu::BufferUsages::VERTEX),
-        indices: buffer(bytemuck::cast_slice(&mesh.indices), wgpu::BufferUsages::INDEX),
+        vertices: gpu.buffer(wgpu::BufferUsages::VERTEX, bytemuck::cast_slice(&mesh.vertices)),
+        indices: gpu.buffer(wgpu::BufferUsages::INDEX, bytemuck::cast_slice(&mesh.indices)),
         count: mesh.indices.len() as u32,
     }
 }
@@ -340,13 +336,7 @@ fn scene_group(
     scene: &SceneUniform,
     material: &Material,
 ) -> wgpu::BindGroup {
-    let uniform = |contents| {
-        gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: None,
-            contents,
-            usage: wgpu::BufferUsages::UNIFORM,
-        })
-    };
+    let uniform = |contents| gpu.buffer(wgpu::BufferUsages::UNIFORM, contents);
     let buffers = [uniform(bytemuck::bytes_of(scene)), uniform(bytemuck::bytes_of(material))];
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
