@@ -16,11 +16,15 @@ test:
 # Format, then lint.
 lint:
     cargo fmt --all
-    cargo clippy --workspace --all-targets -- -D warnings
+    cargo clippy --workspace --all-targets --all-features -- -D warnings
 
 # Bake the built-in example and paint a picture of it.
 demo *ARGS:
     cargo run --release --bin glint-bake -- demo {{ARGS}}
+
+# Show packs in a window, or draw them without one; see glint-view --help.
+view *ARGS:
+    cargo run --release --features view --bin glint-view -- {{ARGS}}
 
 # Static programs for any Linux of this processor, without shared libraries, into target/TRIPLE/release.
 dist TRIPLE="x86_64-unknown-linux-gnu":

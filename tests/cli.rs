@@ -52,3 +52,6 @@ mod shaders;
 mod support;
 #[path = "cli/surface.rs"]
 mod surface;
+#[cfg(feature = "view")]
+#[path = "cli/view.rs"]
+mod view;

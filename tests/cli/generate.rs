@@ -22,7 +22,7 @@ fn parses(program: &str, args: &[&str], file: &Path) {
 fn every_subcommand_has_a_manual_page() {
     let folder = tempfile::tempdir().unwrap();
     bake(folder.path(), &["generate", "man", "-o", "man"]).ok();
-    let mut names = vec!["glint-info.1".to_owned(), "glint-bake.1".to_owned()];
+    let mut names = ["glint-info.1", "glint-bake.1", "glint-view.1"].map(String::from).to_vec();
     for program in programs() {
         names.extend(program.get_subcommands().map(|sub| format!("{}-{}.1", program.get_name(), sub.get_name())));
     }
@@ -45,13 +45,13 @@ fn every_subcommand_has_a_manual_page() {
 fn completions_are_parsed_by_their_shells() {
     let folder = tempfile::tempdir().unwrap();
     for (shell, files, checker) in [
-        ("bash", ["glint-bake.bash", "glint-info.bash"], Some("bash")),
-        ("zsh", ["_glint-bake", "_glint-info"], Some("zsh")),
-        ("fish", ["glint-bake.fish", "glint-info.fish"], Some("fish")),
-        ("powershell", ["_glint-bake.ps1", "_glint-info.ps1"], None),
+        ("bash", ["glint-bake.bash", "glint-info.bash", "glint-view.bash"], Some("bash")),
+        ("zsh", ["_glint-bake", "_glint-info", "_glint-view"], Some("zsh")),
+        ("fish", ["glint-bake.fish", "glint-info.fish", "glint-view.fish"], Some("fish")),
+        ("powershell", ["_glint-bake.ps1", "_glint-info.ps1", "_glint-view.ps1"], None),
     ] {
         bake(folder.path(), &["generate", shell, "--output", "completions", "-q"]).ok();
-        for (file, flag) in files.into_iter().zip(["area-light", "extract"]) {
+        for (file, flag) in files.into_iter().zip(["area-light", "extract", "turntable"]) {
             let path = folder.path().join("completions").join(file);
             let script = fs::read_to_string(&path).unwrap();
             assert!(script.contains(flag), "{file} does not know {flag}");

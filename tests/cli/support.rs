@@ -22,7 +22,8 @@ impl Outcome {
     }
 }
 
-fn run(program: &str, folder: &Path, args: &[&str]) -> Outcome {
+/// Runs a program in `folder`.
+pub fn run(program: &str, folder: &Path, args: &[&str]) -> Outcome {
     let output = Command::cargo_bin(program).unwrap().current_dir(folder).args(args).output().unwrap();
     Outcome {
         code: output.status.code().unwrap(),
