@@ -46,6 +46,8 @@ mod read_pack;
 mod report;
 #[path = "cli/schema.rs"]
 mod schema;
+#[path = "cli/shaders.rs"]
+mod shaders;
 #[path = "cli/support.rs"]
 mod support;
 #[path = "cli/surface.rs"]

@@ -74,6 +74,16 @@ pub fn reflectance(text: &str) -> Result<f32, String> {
     text.parse().ok().filter(|v| (0.0..=1.0).contains(v)).ok_or_else(|| "expected a number from 0 to 1".into())
 }
 
+/// A finite number.
+pub fn finite(text: &str) -> Result<f32, String> {
+    text.parse::<f32>().ok().filter(|v| v.is_finite()).ok_or_else(|| "expected a number".into())
+}
+
+/// A finite number, 0 or above.
+pub fn not_negative(text: &str) -> Result<f32, String> {
+    finite(text).ok().filter(|v| *v >= 0.0).ok_or_else(|| "expected a number, 0 or above".into())
+}
+
 /// A finite number above 0.
 pub fn positive(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|v| v.is_finite() && *v > 0.0);

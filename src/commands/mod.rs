@@ -17,7 +17,9 @@ mod normal_maps;
 mod plan;
 mod preview;
 mod report;
+mod shaders;
 mod surface;
+mod view;
 
 pub use methods::{Draft, Method};
 
@@ -62,6 +64,7 @@ enum Command {
     Preview(preview::Args),
     Export(export::Args),
     Generate(generate::Args),
+    Shaders(shaders::Args),
     Report(report::Args),
     Demo(demo::Args),
 }
@@ -77,6 +80,7 @@ pub fn bake(cli: Bake) -> Result<(), Failure> {
         Command::Preview(args) => preview::run(&args, terminal),
         Command::Export(args) => export::run(&args, terminal),
         Command::Generate(args) => generate::run(&args, terminal),
+        Command::Shaders(args) => shaders::run(&args, terminal),
         Command::Report(args) => report::run(&args, terminal),
         Command::Demo(args) => demo::run(&args, terminal),
     }
@@ -100,10 +104,36 @@ pub fn info(cli: Info) -> Result<(), Failure> {
     info::run(&cli.args, terminal)
 }
 
-/// Both programs as clap sees them, for manual pages, completions, and the tests that compare flags and
+/// Lines that `glint-view --help` shows and a test runs.
+const VIEW_EXAMPLES: &str = "\
+Examples:
+  glint-view dictionary.glintpack --headless glints.png
+  glint-view paint.glintpack --shape sphere --headless paint.png --samples 16
+  glint-view paint.glintpack --list";
+
+/// The command line of glint-view.
+#[derive(Parser, Debug)]
+#[command(name = "glint-view", version, long_version = LONG_VERSION, max_term_width = 100)]
+#[command(after_help = format!("{VIEW_EXAMPLES}\n\n{HELP}"))]
+#[command(about = "Shows packs in a window, or as pictures without one")]
+pub struct View {
+    #[command(flatten)]
+    args: view::Args,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Runs glint-view.
+#[cfg(feature = "view")]
+pub fn view(cli: View) -> Result<(), Failure> {
+    let terminal = Terminal::new(&cli.common);
+    view::run(&cli.args, terminal)
+}
+
+/// All programs as clap sees them, for manual pages, completions, and the tests that compare flags and
 /// documentation.
-pub fn programs() -> [clap::Command; 2] {
-    [Bake::command(), Info::command()]
+pub fn programs() -> [clap::Command; 3] {
+    [Bake::command(), Info::command(), View::command()]
 }
 
 /// Runs `work` on `threads` threads; as many as there are cores when it is not said.

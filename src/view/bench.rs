@@ -1,7 +1,11 @@
 //! Time of each method over that of its smooth baseline, in one run, with the error against its reference beside it.
 
 use crate::gpu::{Gpu, GpuError};
-use crate::render::{Compare, Renderer, Shown, Side, View, picture};
+use crate::render::{Camera, Compare, Method, Renderer, Shown, Side, View, picture};
+use crate::scene::Mesh;
+use crate::settings::{Against, Settings};
+use crate::subjects::Subjects;
+use glam::Vec3;
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,6 +24,65 @@ impl Default for BenchSettings {
     }
 }
 
+/// Texels of a map that a pixel is wide and high where it is seen from straight ahead.
+const TEXELS_PER_PIXEL: f32 = 2.0;
+/// Edge of the wall: it fills the picture from the side, too.
+const WALL: f32 = 16.0;
+/// Vertical field of view in radians (35°).
+const FIELD_OF_VIEW: f32 = 0.610_865_24;
+
+/// A picture that a wall fills, in the light that a method is made for.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// How the wall is seen.
+    pub name: &'static str,
+    /// The wall.
+    pub mesh: Mesh,
+    /// The view, of the method.
+    pub view: View,
+    /// What the method is compared with.
+    pub baseline: Shown,
+}
+
+impl Setup {
+    /// The setups of entry `index` of `list`, with the lights and materials of `settings`: the wall from straight ahead, where
+    /// footprints are round and equal, and from 60° to the side, where they are long. None for what is a baseline itself.
+    pub fn of(list: &[Shown], index: usize, settings: &Settings, size: [u32; 2]) -> Vec<Setup> {
+        let shown = &list[index];
+        let Some(method) = shown.method.baseline() else { return Vec::new() };
+        let Some(base) =
+            list.iter().find(|other| other.method == method && (other.name == shown.name || method == Method::Smooth))
+        else {
+            return Vec::new();
+        };
+        let mut settings = settings.clone();
+        settings.shown = index;
+        settings.against = Against::Nothing;
+        settings.lights.only(&[shown.method.usual_light()]);
+        settings.lights.room_on = false;
+        let material = settings.materials[index];
+        // One unit of uv is the whole wall; the picture shows a height of 1 of it.
+        settings.uv_scale = WALL;
+        if shown.method.has_map() {
+            settings.uv_scale *= TEXELS_PER_PIXEL * size[1] as f32 / material.texels_per_unit;
+        }
+        let distance = 0.5 / (0.5 * FIELD_OF_VIEW).tan();
+        let places = [("ahead", Vec3::new(0.0, 0.0, 1.0)), ("60°", Vec3::new(0.0, -0.866_025_4, 0.5))];
+        places
+            .map(|(name, direction)| {
+                let mut settings = settings.clone();
+                // The mirror image of the camera, so that the highlight is in the picture.
+                settings.lights.sun.direction = direction * Vec3::new(1.0, -1.0, 1.0) + Vec3::new(0.1, 0.1, 0.0);
+                let mut view = settings.view(list, size);
+                let position = direction * distance;
+                view.scene.camera = Camera { position, target: Vec3::ZERO, field_of_view: FIELD_OF_VIEW, near: 0.01 };
+                let baseline = Shown { material, ..base.clone() };
+                Setup { name, mesh: Mesh::wall(WALL, WALL), view, baseline }
+            })
+            .into()
+    }
+}
+
 /// What was measured of a method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BenchRow {
@@ -27,6 +90,8 @@ pub struct BenchRow {
     pub method: &'static str,
     /// Material.
     pub name: String,
+    /// How the wall is seen.
+    pub view: &'static str,
     /// What its time is compared with.
     pub baseline: &'static str,
     /// Median seconds of a frame's surface pass.
@@ -37,22 +102,19 @@ pub struct BenchRow {
     pub error: Option<f64>,
 }
 
-/// Measures `shown` against `baseline` in the scene of `view_of`.
-pub fn measure(
-    gpu: &Gpu,
-    renderer: &mut Renderer,
-    view_of: &View,
-    shown: &Shown,
-    baseline: &Shown,
-    settings: BenchSettings,
-) -> Result<BenchRow, GpuError> {
+/// Measures the method of a setup, one of `subjects`, against its baseline.
+pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSettings) -> Result<BenchRow, GpuError> {
+    let Compare::Single(Side { shown, .. }) = &setup.view.compare else {
+        return Err(GpuError::Failed("a bench has one side".into()));
+    };
+    let renderer = &mut subjects.renderer(gpu, &setup.mesh)?;
     let of = |shown: &Shown, reference| View {
         compare: Compare::Single(Side { shown: shown.clone(), reference }),
         antialias: false,
         vary_seed: false,
-        ..view_of.clone()
+        ..setup.view.clone()
     };
-    let views = [of(baseline, false), of(shown, false)];
+    let views = [of(&setup.baseline, false), of(shown, false)];
     let mut times = [Vec::new(), Vec::new()];
     // The first frame of each compiles its program and is not counted.
     for frame in 0..=settings.frames.max(1) {
@@ -73,7 +135,8 @@ pub fn measure(
     Ok(BenchRow {
         method: shown.method.name(),
         name: shown.name.clone(),
-        baseline: baseline.method.name(),
+        view: setup.name,
+        baseline: setup.baseline.method.name(),
         seconds: own,
         ratio: own / base,
         error,
@@ -119,14 +182,15 @@ fn median(mut values: Vec<f64>) -> f64 {
 /// The rows as a Markdown table.
 pub fn table(rows: &[BenchRow]) -> String {
     let mut text = String::from(
-        "| method | material | ms a frame | ratio to | ratio | error |\n| --- | --- | ---: | --- | ---: | ---: |\n",
+        "| method | material | seen from | ms a frame | over | ratio | error |\n| --- | --- | --- | ---: | --- | ---: | ---: |\n",
     );
     for row in rows {
         let error = row.error.map_or("".to_owned(), |error| format!("{:.1} %", 100.0 * error));
         text.push_str(&format!(
-            "| {} | {} | {:.1} | {} | {:.2} | {error} |\n",
+            "| {} | {} | {} | {:.1} | {} | {:.2} | {error} |\n",
             row.method,
             row.name,
+            row.view,
             1e3 * row.seconds,
             row.baseline,
             row.ratio

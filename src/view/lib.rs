@@ -8,4 +8,5 @@ pub mod methods;
 pub mod render;
 pub mod scene;
 pub mod settings;
+pub mod subjects;
 pub mod window;

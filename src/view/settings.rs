@@ -1,8 +1,8 @@
 //! All that a user sets, in the window's panel or by flags, and the view that follows from it.
 
 use crate::render::{
-    Camera, Compare, Display, Environment, Lights, Material, Overlay, PointLight, RectLight, Scene, Shown, Side, Sun,
-    ToneMapping, View,
+    Camera, Compare, Display, Environment, LightKind, Lights, Material, Overlay, PointLight, RectLight, Scene, Shown,
+    Side, Sun, ToneMapping, View,
 };
 use crate::scene::Orbit;
 use glam::Vec3;
@@ -49,37 +49,64 @@ pub struct LightSettings {
     pub environment_on: bool,
     /// How it is turned and scaled.
     pub environment: Environment,
-}
-
-impl Default for LightSettings {
-    /// A directional light from behind the surface, a point over it and a rectangle behind it, for meshes of radius 1.
-    fn default() -> LightSettings {
-        let corner = |x: f32, y: f32| Vec3::new(x, y, -1.6);
-        LightSettings {
-            sun_on: true,
-            sun: Sun { direction: Vec3::new(0.3, 1.2, -1.0), irradiance: Vec3::splat(3.0) },
-            points_on: false,
-            points: vec![PointLight { position: Vec3::new(0.6, 0.9, -0.6), intensity: Vec3::splat(3.0) }],
-            rect_on: false,
-            rect: RectLight {
-                corners: [corner(-0.8, 0.3), corner(0.8, 0.3), corner(0.8, 1.1), corner(-0.8, 1.1)],
-                radiance: Vec3::splat(6.0),
-                two_sided: false,
-            },
-            environment_on: false,
-            environment: Environment { turn: 0.0, gain: 1.0 },
-        }
-    }
+    /// Whether a dim room is around the scene; not where the environment is on.
+    pub room_on: bool,
 }
 
 impl LightSettings {
+    /// Lights for the mesh that a camera was made for: over and behind what is flat, where its mirror image is seen; else in
+    /// front.
+    pub fn for_camera(camera: &Orbit) -> LightSettings {
+        let (centre, radius) = (camera.target, camera.radius());
+        let (sun, point, middle) = if camera.is_flat() {
+            (Vec3::new(0.3, 1.2, -1.0), Vec3::new(0.5, 0.6, -0.5), Vec3::new(0.0, 0.6, -1.2))
+        } else {
+            (Vec3::new(0.5, 0.8, 0.7), Vec3::new(0.9, 1.0, 1.3), Vec3::new(-1.0, 1.4, 1.3))
+        };
+        LightSettings {
+            sun_on: true,
+            sun: Sun { direction: sun, irradiance: Vec3::splat(3.0) },
+            points_on: false,
+            points: vec![PointLight {
+                position: centre + point * radius,
+                intensity: Vec3::splat(3.0 * radius * radius),
+            }],
+            rect_on: false,
+            rect: rect_facing(centre, centre + middle * radius, 0.55 * radius, 0.35 * radius),
+            environment_on: false,
+            environment: Environment { turn: 0.0, gain: 1.0 },
+            room_on: true,
+        }
+    }
+
+    /// Switches these on and all others off.
+    pub fn only(&mut self, kinds: &[LightKind]) {
+        self.sun_on = kinds.contains(&LightKind::Sun);
+        self.points_on = kinds.contains(&LightKind::Points);
+        self.rect_on = kinds.contains(&LightKind::Rect);
+        self.environment_on = kinds.contains(&LightKind::Environment);
+    }
+
     fn lights(&self) -> Lights {
         Lights {
             sun: self.sun_on.then_some(self.sun),
             points: if self.points_on { self.points.clone() } else { Vec::new() },
             rect: self.rect_on.then_some(self.rect),
             environment: self.environment_on.then_some(self.environment),
+            room: self.room_on && !self.environment_on,
         }
+    }
+}
+
+/// A rectangle around `middle` that faces `target`, upright, of this half width and half height.
+fn rect_facing(target: Vec3, middle: Vec3, half_width: f32, half_height: f32) -> RectLight {
+    let front = (target - middle).normalize_or(Vec3::NEG_Y);
+    let right = Vec3::Y.cross(front).normalize_or(Vec3::X);
+    let (across, up) = (right * half_width, front.cross(right) * half_height);
+    RectLight {
+        corners: [middle - across - up, middle + across - up, middle + across + up, middle - across + up],
+        radiance: Vec3::splat(8.0),
+        two_sided: false,
     }
 }
 
@@ -115,7 +142,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// What a new user sees of `list`: its first entry in directional light.
+    /// What a new user sees of `list` through a camera that was made for the mesh: its first entry in directional light.
     pub fn new(list: &[Shown], camera: Orbit) -> Settings {
         Settings {
             shown: 0,
@@ -123,7 +150,7 @@ impl Settings {
             layout: Layout::Split(0.5),
             reference: false,
             materials: list.iter().map(|shown| shown.material).collect(),
-            lights: LightSettings::default(),
+            lights: LightSettings::for_camera(&camera),
             exposure_stops: 0.0,
             tone: ToneMapping::Filmic,
             overlay: Overlay::None,
@@ -169,5 +196,19 @@ impl Settings {
             antialias: self.antialias,
             vary_seed: self.vary_seed,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Mesh;
+
+    #[test]
+    fn the_rectangle_radiates_towards_the_mesh() {
+        let bounds = Mesh::sphere(8).bounds();
+        let [a, b, _, d] = LightSettings::for_camera(&Orbit::fit(bounds)).rect.corners;
+        // Counter-clockwise from where it radiates to: the normal points there.
+        assert!((b - a).cross(d - a).dot(bounds.centre() - a) > 0.0);
     }
 }

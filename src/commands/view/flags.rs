@@ -53,6 +53,14 @@ pub struct PictureFlags {
     pub adapter: Option<String>,
 }
 
+impl PictureFlags {
+    /// Whether nothing that is asked for does without a window.
+    #[cfg(feature = "view")]
+    pub fn opens_window(&self, list: bool) -> bool {
+        !list && !self.bench && self.headless.is_none() && self.turntable.is_none()
+    }
+}
+
 /// Flags of what is shown.
 #[derive(clap::Args, Clone, Debug)]
 #[command(next_help_heading = "View")]
@@ -98,7 +106,7 @@ pub struct SceneFlags {
     pub camera: Option<String>,
     /// Lights that are on [default: the rectangle for area lights, the environment for environments, else the sun]
     #[arg(long, value_name = "LIGHT", value_delimiter = ',')]
-    pub light: Vec<LightKind>,
+    pub light: Vec<LightFlag>,
     /// Direction towards the sun
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::direction)]
     pub sun: Option<[f32; 3]>,
@@ -127,7 +135,7 @@ pub struct MaterialFlags {
     #[arg(long, value_name = "SHARE", value_parser = values::reflectance)]
     pub relative_area: Option<f32>,
     /// Standard deviation of a cell's level of density
-    #[arg(long, value_name = "LEVELS", value_parser = values::reflectance)]
+    #[arg(long, value_name = "LEVELS", value_parser = values::not_negative)]
     pub density_randomisation: Option<f32>,
     /// Largest ratio of the footprint's axes, 1 to 16
     #[arg(long, value_name = "RATIO", value_parser = values::positive)]
@@ -195,7 +203,7 @@ pub enum ShapeKind {
 
 /// Lights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum LightKind {
+pub enum LightFlag {
     /// Directional light
     Sun,
     /// Points

@@ -3,7 +3,6 @@
 use super::device::{Gpu, GpuError};
 use super::resources::Resources;
 use bytemuck::Pod;
-use wgpu::util::DeviceExt;
 
 /// Queries of one dispatch, at most: 64 an invocation group, 65 535 groups.
 const MOST: usize = 64 * 65_535;
@@ -51,11 +50,7 @@ pub fn answer<Q: Pod, A: Pod>(
         })
     })?;
 
-    let input = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: None,
-        contents: bytemuck::cast_slice(queries),
-        usage: wgpu::BufferUsages::STORAGE,
-    });
+    let input = gpu.buffer(wgpu::BufferUsages::STORAGE, bytemuck::cast_slice(queries));
     let size = (queries.len() * size_of::<A>()) as u64;
     let buffer =
         |usage| device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false });

@@ -84,10 +84,29 @@ impl Gpu {
                 lost.get_or_insert(format!("{reason:?}: {message}"));
             }
         });
+        let record = Arc::clone(&lost);
+        // Whatever is done with a device that is lost is an error, too; the loss is what is told. Else it is a fault of ours.
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            if let Ok(mut lost) = record.lock() {
+                lost.get_or_insert_with(|| error.to_string());
+            }
+        }));
         Ok(Gpu { instance, adapter, info, device, queue, lost })
     }
 
-    /// Why the device was lost, if it was.
+    /// A buffer with these bytes, a multiple of four. On a lost device it is unusable, but no panic.
+    pub fn buffer(&self, usage: wgpu::BufferUsages, contents: &[u8]) -> wgpu::Buffer {
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: contents.len() as u64,
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        self.queue.write_buffer(&buffer, 0, contents);
+        buffer
+    }
+
+    /// Why the device was lost or failed, if it did.
     pub fn lost(&self) -> Option<String> {
         self.lost.lock().ok().and_then(|lost| lost.clone())
     }

@@ -61,11 +61,7 @@ impl ResourceSet {
         let mut padded = contents.to_vec();
         padded.resize(contents.len().next_multiple_of(16).max(16), 0);
         self.bytes += padded.len() as u64;
-        let buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: None,
-            contents: &padded,
-            usage: usage | wgpu::BufferUsages::COPY_DST,
-        });
+        let buffer = gpu.buffer(usage, &padded);
         self.push(
             wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
             Resource::Buffer(buffer),

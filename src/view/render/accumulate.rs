@@ -3,7 +3,6 @@
 use super::full_screen;
 use super::targets::{RADIANCE, Side, view};
 use crate::gpu::{Gpu, GpuError};
-use wgpu::util::DeviceExt;
 
 /// The pass.
 #[derive(Debug)]
@@ -26,11 +25,7 @@ impl Accumulate {
         timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) {
         let weight = [1.0 / count as f32, 0.0, 0.0, 0.0];
-        let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: None,
-            contents: bytemuck::cast_slice(&weight),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let uniform = gpu.buffer(wgpu::BufferUsages::UNIFORM, bytemuck::cast_slice(&weight));
         let [after, before] = [count, count + 1].map(|parity| view(&side.means[(parity % 2) as usize]));
         // The first frame is taken as it is: what the other texture holds may be no number.
         let before = if count == 1 { view(&side.frame) } else { before };

@@ -14,5 +14,7 @@ mod uniforms;
 pub use picture::{Picture, picture, read_picture};
 pub use present::{Display, Overlay, ToneMapping};
 pub use renderer::{Compare, Renderer, Side, View};
-pub use shown::{Method, Shown};
-pub use uniforms::{Camera, Environment, Lights, MAX_POINT_LIGHTS, Material, PointLight, RectLight, Scene, Sun};
+pub use shown::{LightKind, Method, Shown};
+pub use uniforms::{
+    Camera, Environment, Lights, MAX_POINT_LIGHTS, Material, PointLight, RectLight, SWAP_LAYERS, Scene, Sun,
+};

@@ -2,18 +2,20 @@
 
 use super::shown::Method;
 use super::targets::{DEPTH, RADIANCE};
-use crate::gpu::{Gpu, GpuError, Resources};
+use crate::gpu::{Gpu, GpuError, ResourceSet, Resources};
 use crate::scene::Vertex;
 use std::collections::HashMap;
 use std::mem::offset_of;
 
 /// What a pipeline is specialised for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Key {
     pub method: Method,
     pub lights: u32,
     pub reference: bool,
     pub overlay: u32,
+    /// Constants of the method, as bits of their values.
+    pub constants: Vec<(&'static str, u64)>,
 }
 
 /// Pipelines by what they are specialised for, and the shader modules of the methods.
@@ -21,6 +23,7 @@ pub(super) struct Key {
 pub(super) struct Pipelines {
     modules: HashMap<Method, wgpu::ShaderModule>,
     pipelines: HashMap<Key, wgpu::RenderPipeline>,
+    backgrounds: HashMap<u32, wgpu::RenderPipeline>,
 }
 
 impl Pipelines {
@@ -40,16 +43,48 @@ impl Pipelines {
                 let module = gpu.shader(key.method.name(), &glint_shaders::compose(&files))?;
                 self.modules.insert(key.method, module);
             }
-            let pipeline = make(gpu, key, &self.modules[&key.method], [scene, &data.layout, &environment.layout])?;
-            self.pipelines.insert(key, pipeline);
+            let groups = [scene, &data.layout, &environment.layout];
+            let pipeline = make(gpu, &key, &self.modules[&key.method], groups)?;
+            self.pipelines.insert(key.clone(), pipeline);
         }
         Ok(&self.pipelines[&key])
     }
+
+    /// The pipeline that fills what no mesh covers.
+    pub fn background(
+        &mut self,
+        gpu: &Gpu,
+        lights: u32,
+        scene: &wgpu::BindGroupLayout,
+        environment: &Resources,
+    ) -> Result<&wgpu::RenderPipeline, GpuError> {
+        if !self.backgrounds.contains_key(&lights) {
+            let module = gpu.shader("background", &glint_shaders::compose(&BACKGROUND))?;
+            let nothing = ResourceSet::default().finish(gpu);
+            let groups = [scene, &nothing.layout, &environment.layout];
+            let drawing = Drawing { label: "background", module: &module, groups, buffers: &[], covers: false };
+            self.backgrounds.insert(lights, drawing.pipeline(gpu, &[("LIGHTS", f64::from(lights))])?);
+        }
+        Ok(&self.backgrounds[&lights])
+    }
+}
+
+/// Files of the program that draws the background.
+const BACKGROUND: [&str; 2] = ["view_background", "shade_background_none"];
+
+/// What pipelines that draw radiance with depth differ in.
+struct Drawing<'a> {
+    label: &'static str,
+    module: &'a wgpu::ShaderModule,
+    groups: [&'a wgpu::BindGroupLayout; 3],
+    buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    /// Whether it writes depth; else it fills what is left.
+    covers: bool,
 }
 
 fn make(
     gpu: &Gpu,
-    key: Key,
+    key: &Key,
     module: &wgpu::ShaderModule,
     groups: [&wgpu::BindGroupLayout; 3],
 ) -> Result<wgpu::RenderPipeline, GpuError> {
@@ -64,49 +99,61 @@ fn make(
         attribute(2, wgpu::VertexFormat::Float32x4, offset_of!(Vertex, tangent)),
         attribute(3, wgpu::VertexFormat::Float32x2, offset_of!(Vertex, uv)),
     ];
-    let constants = [
+    let buffers = [Some(wgpu::VertexBufferLayout {
+        array_stride: size_of::<Vertex>() as u64,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &attributes,
+    })];
+    let mut constants = vec![
         ("LIGHTS", f64::from(key.lights)),
         ("REFERENCE", f64::from(u8::from(key.reference))),
         ("OVERLAY", f64::from(key.overlay)),
     ];
-    let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: &groups.map(Some),
-        immediate_size: 0,
-    });
-    gpu.checked(key.method.name(), || {
-        gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(key.method.name()),
-            layout: Some(&layout),
-            vertex: wgpu::VertexState {
-                module,
-                entry_point: Some("vertex"),
-                compilation_options: options.clone(),
-                buffers: &[Some(wgpu::VertexBufferLayout {
-                    array_stride: size_of::<Vertex>() as u64,
-                    step_mode: wgpu::VertexStepMode::Vertex,
-                    attributes: &attributes,
-                })],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH,
-                depth_write_enabled: Some(true),
-                // Depth is reversed: 1 is near.
-                depth_compare: Some(wgpu::CompareFunction::Greater),
-                stencil: Default::default(),
-                bias: Default::default(),
-            }),
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module,
-                entry_point: Some("fragment"),
-                compilation_options: options.clone(),
-                targets: &[Some(RADIANCE.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
+    constants.extend(key.constants.iter().map(|&(name, bits)| (name, f64::from_bits(bits))));
+    Drawing { label: key.method.name(), module, groups, buffers: &buffers, covers: true }.pipeline(gpu, &constants)
+}
+
+impl Drawing<'_> {
+    fn pipeline(&self, gpu: &Gpu, constants: &[(&str, f64)]) -> Result<wgpu::RenderPipeline, GpuError> {
+        let options = wgpu::PipelineCompilationOptions { constants, ..Default::default() };
+        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &self.groups.map(Some),
+            immediate_size: 0,
+        });
+        gpu.checked(self.label, || {
+            gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(self.label),
+                layout: Some(&layout),
+                vertex: wgpu::VertexState {
+                    module: self.module,
+                    entry_point: Some("vertex"),
+                    compilation_options: options.clone(),
+                    buffers: self.buffers,
+                },
+                primitive: wgpu::PrimitiveState::default(),
+                depth_stencil: Some(wgpu::DepthStencilState {
+                    format: DEPTH,
+                    depth_write_enabled: Some(self.covers),
+                    // Depth is reversed: 1 is near, 0 infinitely far.
+                    depth_compare: Some(if self.covers {
+                        wgpu::CompareFunction::Greater
+                    } else {
+                        wgpu::CompareFunction::Equal
+                    }),
+                    stencil: Default::default(),
+                    bias: Default::default(),
+                }),
+                multisample: wgpu::MultisampleState::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: self.module,
+                    entry_point: Some("fragment"),
+                    compilation_options: options.clone(),
+                    targets: &[Some(RADIANCE.into())],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
         })
-    })
+    }
 }

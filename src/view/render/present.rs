@@ -3,7 +3,6 @@
 use super::full_screen;
 use crate::gpu::{Gpu, GpuError};
 use bytemuck::{Pod, Zeroable};
-use wgpu::util::DeviceExt;
 
 /// From exposed radiance to what a display can show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -125,11 +124,7 @@ impl Present {
             overlay_high,
             unused: 0.0,
         };
-        let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: None,
-            contents: bytemuck::bytes_of(&values),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let uniform = gpu.buffer(wgpu::BufferUsages::UNIFORM, bytemuck::bytes_of(&values));
         full_screen::draw(gpu, encoder, &self.pipeline, &uniform, sources, target, timestamps);
     }
 }

@@ -11,7 +11,6 @@ use crate::gpu::{Gpu, GpuError, ResourceSet, Resources, read_back};
 use crate::scene::Mesh;
 use glam::Vec2;
 use std::rc::Rc;
-use wgpu::util::DeviceExt;
 
 /// One of the pictures that are compared.
 #[derive(Clone, Debug)]
@@ -83,6 +82,7 @@ struct MeshBuffers {
 pub struct Renderer {
     mesh: MeshBuffers,
     environment: Rc<Resources>,
+    nothing: Resources,
     scene_layout: wgpu::BindGroupLayout,
     pipelines: Pipelines,
     accumulate: Accumulate,
@@ -124,6 +124,7 @@ impl Renderer {
         Ok(Renderer {
             mesh: mesh_buffers(gpu, mesh),
             environment: Rc::new(ResourceSet::default().finish(gpu)),
+            nothing: ResourceSet::default().finish(gpu),
             scene_layout,
             pipelines: Pipelines::default(),
             accumulate: Accumulate::new(gpu)?,
@@ -206,14 +207,18 @@ impl Renderer {
             material.seed = material.seed.wrapping_add(self.frames);
         }
         let group = scene_group(gpu, &self.scene_layout, &scene, &material);
+        let constants = side.shown.method.constants(&material);
         let key = Key {
             method: side.shown.method,
             lights: view_of.scene.lights.bits(),
             reference: side.reference,
             overlay: view_of.display.overlay.number(),
+            constants: constants.into_iter().map(|(name, value)| (name, value.to_bits())).collect(),
         };
         let data = &side.shown.data;
-        let pipeline = self.pipelines.get(gpu, key, &self.scene_layout, data, &self.environment)?;
+        let lights = key.lights;
+        let pipeline = self.pipelines.get(gpu, key, &self.scene_layout, data, &self.environment)?.clone();
+        let background = self.pipelines.background(gpu, lights, &self.scene_layout, &self.environment)?;
         self.passes.push(if index == 0 { "surface" } else { "surface, right" });
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("surface"),
@@ -231,13 +236,16 @@ impl Renderer {
             timestamp_writes: self.timing.next(),
             ..Default::default()
         });
-        pass.set_pipeline(pipeline);
+        pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &group, &[]);
         pass.set_bind_group(1, &data.group, &[]);
         pass.set_bind_group(2, &self.environment.group, &[]);
         pass.set_vertex_buffer(0, self.mesh.vertices.slice(..));
         pass.set_index_buffer(self.mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..self.mesh.count, 0, 0..1);
+        pass.set_pipeline(background);
+        pass.set_bind_group(1, &self.nothing.group, &[]);
+        pass.draw(0..3, 0..1);
         drop(pass);
         if view_of.converges() {
             self.passes.push("mean");
@@ -315,12 +323,9 @@ pub(super) fn texture_bytes(gpu: &Gpu, texture: &wgpu::Texture, texel_bytes: u32
 }
 
 fn mesh_buffers(gpu: &Gpu, mesh: &Mesh) -> MeshBuffers {
-    let buffer = |contents, usage| {
-        gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
-    };
     MeshBuffers {
-        vertices: buffer(bytemuck::cast_slice(&mesh.vertices), wgpu::BufferUsages::VERTEX),
-        indices: buffer(bytemuck::cast_slice(&mesh.indices), wgpu::BufferUsages::INDEX),
+        vertices: gpu.buffer(wgpu::BufferUsages::VERTEX, bytemuck::cast_slice(&mesh.vertices)),
+        indices: gpu.buffer(wgpu::BufferUsages::INDEX, bytemuck::cast_slice(&mesh.indices)),
         count: mesh.indices.len() as u32,
     }
 }
@@ -331,13 +336,7 @@ fn scene_group(
     scene: &SceneUniform,
     material: &Material,
 ) -> wgpu::BindGroup {
-    let uniform = |contents| {
-        gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: None,
-            contents,
-            usage: wgpu::BufferUsages::UNIFORM,
-        })
-    };
+    let uniform = |contents| gpu.buffer(wgpu::BufferUsages::UNIFORM, contents);
     let buffers = [uniform(bytemuck::bytes_of(scene)), uniform(bytemuck::bytes_of(material))];
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,

@@ -4,6 +4,19 @@ use super::uniforms::Material;
 use crate::gpu::Resources;
 use std::rc::Rc;
 
+/// A kind of light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightKind {
+    /// Light from one direction.
+    Sun,
+    /// Points.
+    Points,
+    /// A rectangle.
+    Rect,
+    /// The environment of a pack.
+    Environment,
+}
+
 /// A way to shade a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Method {
@@ -11,22 +24,85 @@ pub enum Method {
     Smooth,
     /// Slope dictionary.
     Dictionary,
+    /// Multi-scale LTC: mean normals with the roughness of what they average.
+    AreaLight,
+    /// The same normals with one roughness everywhere: plain LTC.
+    PlainLtc,
+}
+
+/// What is known of a method.
+struct Facts {
+    name: &'static str,
+    files: &'static [&'static str],
+    light: LightKind,
+    baseline: Option<Method>,
+    has_map: bool,
 }
 
 impl Method {
+    fn facts(self) -> Facts {
+        match self {
+            Method::Smooth => Facts {
+                name: "smooth",
+                files: &["shade_smooth", "shade_rect_points", "shade_environment_none"],
+                light: LightKind::Sun,
+                baseline: None,
+                has_map: false,
+            },
+            Method::Dictionary => Facts {
+                name: "dictionary",
+                files: &["shade_dictionary", "shade_rect_points", "shade_environment_none"],
+                light: LightKind::Sun,
+                baseline: Some(Method::Smooth),
+                has_map: false,
+            },
+            Method::AreaLight => Facts {
+                name: "area-light",
+                files: &["shade_area_light", "shade_environment_none"],
+                light: LightKind::Rect,
+                baseline: Some(Method::PlainLtc),
+                has_map: true,
+            },
+            Method::PlainLtc => Facts {
+                name: "plain-ltc",
+                files: &["shade_plain_ltc", "shade_environment_none"],
+                light: LightKind::Rect,
+                baseline: None,
+                has_map: true,
+            },
+        }
+    }
+
     /// Name on the command line and in reports.
     pub fn name(self) -> &'static str {
-        match self {
-            Method::Smooth => "smooth",
-            Method::Dictionary => "dictionary",
-        }
+        self.facts().name
+    }
+
+    /// The light that it is made for.
+    pub fn usual_light(self) -> LightKind {
+        self.facts().light
+    }
+
+    /// What its cost is compared with: the same light on a surface without glints; nothing for those themselves.
+    pub fn baseline(self) -> Option<Method> {
+        self.facts().baseline
+    }
+
+    /// Whether it draws a map, whose texels have a size on the surface.
+    pub fn has_map(self) -> bool {
+        self.facts().has_map
     }
 
     /// The WGSL files of its program.
     pub(super) fn files(self) -> &'static [&'static str] {
+        self.facts().files
+    }
+
+    /// Pipeline constants of its program beyond those of view_surface.wgsl, for a material.
+    pub(super) fn constants(self, material: &Material) -> Vec<(&'static str, f64)> {
         match self {
-            Method::Smooth => &["shade_smooth", "shade_rect_points", "shade_environment_none"],
-            Method::Dictionary => &["shade_dictionary", "shade_rect_points", "shade_environment_none"],
+            Method::AreaLight => vec![("AREA_LIGHT_DIRECTIONAL", f64::from(u8::from(material.lobes > 0)))],
+            _ => Vec::new(),
         }
     }
 }

@@ -6,6 +6,9 @@ use glam::{Mat3, Mat4, Vec2, Vec3};
 /// Lights of a scene, most of them at once.
 pub const MAX_POINT_LIGHTS: usize = 4;
 
+/// Bit of [`Material::switches`]: layers of two-layer materials are exchanged.
+pub const SWAP_LAYERS: u32 = 1;
+
 /// Where the camera is. +Y of the world is up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -90,6 +93,8 @@ pub struct Lights {
     pub rect: Option<RectLight>,
     /// Environment.
     pub environment: Option<Environment>,
+    /// A dim room around the scene, so that shapes show where no light reaches.
+    pub room: bool,
 }
 
 impl Lights {
@@ -99,6 +104,7 @@ impl Lights {
             | u32::from(!self.points.is_empty()) << 1
             | u32::from(self.rect.is_some()) << 2
             | u32::from(self.environment.is_some()) << 3
+            | u32::from(self.room) << 4
     }
 }
 

@@ -29,6 +29,7 @@ pub struct Orbit {
     pub field_of_view: f32,
     /// Radius of what is looked at: zoom stays in proportion to it.
     radius: f32,
+    is_flat: bool,
 }
 
 /// What `--camera` says: `azimuth,elevation,distance[,x,y,z]`, degrees and world units, then the target.
@@ -89,18 +90,31 @@ impl fmt::Display for Placement {
 }
 
 impl Orbit {
-    /// Looks at all of `bounds` from a little above.
+    /// Looks at all of `bounds` from a little above; at what is flat from nearer, so that it fills the picture's width.
     pub fn fit(bounds: Bounds) -> Orbit {
         let radius = bounds.radius.max(1.0e-6);
+        let is_flat = bounds.max.y - bounds.min.y < 0.01 * radius;
+        // A sphere around it, a tenth larger, touches the upper and lower edge of the picture.
+        let distance = 1.1 * radius / (0.5 * FIELD_OF_VIEW).sin();
         Orbit {
             target: bounds.centre(),
-            // A sphere around it, a tenth larger, touches the upper and lower edge of the picture.
-            distance: 1.1 * radius / (0.5 * FIELD_OF_VIEW).sin(),
+            distance: if is_flat { 0.6 * distance } else { distance },
             azimuth: 0.0,
-            elevation: 25.0,
+            elevation: if is_flat { 35.0 } else { 25.0 },
             field_of_view: FIELD_OF_VIEW,
             radius,
+            is_flat,
         }
+    }
+
+    /// Radius of the mesh that it was made for.
+    pub fn radius(&self) -> f32 {
+        self.radius
+    }
+
+    /// Whether that mesh is horizontal and flat.
+    pub fn is_flat(&self) -> bool {
+        self.is_flat
     }
 
     /// Puts the camera where a text says; distances are not limited then.

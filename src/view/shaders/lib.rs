@@ -10,6 +10,8 @@
 //!
 //! Order of declarations does not matter in WGSL, so a program is its files one after the other ([`compose`]).
 
+pub mod translate;
+
 /// A WGSL file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Module {
@@ -37,13 +39,25 @@ modules! {
     "glint_dictionary" needs ["glint_hash"];
     "bind_dictionary" needs ["glint_dictionary"];
     "query_dictionary" needs ["bind_dictionary"];
+    "glint_ggx" needs [];
+    "glint_ltc" needs [];
+    "glint_area_light" needs ["glint_ltc"];
+    "bind_area_light" needs ["glint_area_light"];
+    "bind_area_light_sampler" needs ["bind_area_light"];
+    "bind_area_light_loads" needs ["bind_area_light"];
+    "query_area_light" needs ["bind_area_light_loads", "glint_ggx"];
     "view_scene" needs [];
-    "view_surface" needs ["view_scene", "glint_hash"];
+    "view_surface" needs ["view_scene", "view_sky", "glint_brdf", "glint_hash"];
+    "view_sky" needs [];
+    "view_background" needs ["view_scene", "view_sky"];
     "view_accumulate" needs [];
     "view_present" needs [];
+    "shade_background_none" needs [];
     "shade_environment_none" needs ["view_scene"];
     "shade_smooth" needs ["view_scene", "glint_brdf"];
     "shade_dictionary" needs ["view_scene", "glint_brdf", "bind_dictionary"];
+    "shade_area_light" needs ["view_scene", "bind_area_light_sampler", "glint_ggx", "glint_hash"];
+    "shade_plain_ltc" needs ["view_scene", "bind_area_light_sampler", "glint_ggx"];
     "shade_rect_points" needs ["view_scene"];
 }
 
@@ -52,30 +66,34 @@ pub fn module(name: &str) -> Option<&'static Module> {
     MODULES.iter().find(|module| module.name == name)
 }
 
+/// These files and all that they need, each once, what is needed before what needs it.
+///
+/// # Panics
+/// If a file is not in [`MODULES`]: names are constants of this workspace.
+pub fn parts(names: &[&str]) -> Vec<&'static Module> {
+    let mut taken = Vec::new();
+    for name in names {
+        add(name, &mut taken);
+    }
+    taken
+}
+
 /// The text of a program of these files and all that they need, each once.
 ///
 /// # Panics
 /// If a file is not in [`MODULES`]: names are constants of this workspace.
 pub fn compose(names: &[&str]) -> String {
-    let mut taken: Vec<&str> = Vec::new();
-    let mut text = String::new();
-    for name in names {
-        add(name, &mut taken, &mut text);
-    }
-    text
+    parts(names).iter().flat_map(|module| [module.source, "\n"]).collect()
 }
 
-fn add(name: &str, taken: &mut Vec<&'static str>, text: &mut String) {
+fn add(name: &str, taken: &mut Vec<&'static Module>) {
     let module = module(name).unwrap_or_else(|| panic!("there is no {name}.wgsl"));
-    if taken.contains(&module.name) {
-        return;
-    }
-    taken.push(module.name);
     for need in module.needs {
-        add(need, taken, text);
+        add(need, taken);
     }
-    text.push_str(module.source);
-    text.push('\n');
+    if !taken.iter().any(|other| other.name == module.name) {
+        taken.push(module);
+    }
 }
 
 #[cfg(test)]

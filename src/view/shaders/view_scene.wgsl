@@ -12,6 +12,13 @@
 //   fn shade_lod(point: ViewPoint) -> f32
 //       level of detail that is read, 0 the finest
 
+const VIEW_LIGHT_SUN: u32 = 1u;
+const VIEW_LIGHT_POINTS: u32 = 2u;
+const VIEW_LIGHT_RECT: u32 = 4u;
+const VIEW_LIGHT_ENVIRONMENT: u32 = 8u;
+// The room of view_sky.wgsl.
+const VIEW_LIGHT_ROOM: u32 = 16u;
+
 struct ViewPointLight {
     position: vec3f,
     // Radiant intensity, linear RGB.

@@ -1,10 +1,5 @@
 // Draws a mesh: the pixel's point, the lights, and the method between them.
 
-const VIEW_LIGHT_SUN: u32 = 1u;
-const VIEW_LIGHT_POINTS: u32 = 2u;
-const VIEW_LIGHT_RECT: u32 = 4u;
-const VIEW_LIGHT_ENVIRONMENT: u32 = 8u;
-
 const VIEW_OVERLAY_FOOTPRINT: u32 = 1u;
 const VIEW_OVERLAY_LOD: u32 = 2u;
 
@@ -88,6 +83,10 @@ fn fragment(f: ViewFragment, @builtin(front_facing) front: bool) -> @location(0)
     }
     if (LIGHTS & VIEW_LIGHT_ENVIRONMENT) != 0u {
         radiance += shade_environment(point);
+    }
+    if (LIGHTS & VIEW_LIGHT_ROOM) != 0u {
+        let mirrored = view_to_world(point, vec3f(-point.view.xy, point.view.z));
+        radiance += glint_fresnel(material.f0, point.view.z) * view_sky(mirrored);
     }
     var overlay = 0.0;
     if OVERLAY == VIEW_OVERLAY_FOOTPRINT {

@@ -208,7 +208,7 @@ mod tests {
     fn settings() -> Settings {
         let mut settings = Settings::new(&[], Orbit::fit(Mesh::sphere(4).bounds()));
         settings.materials = vec![Material::default(); 3];
-        settings.lights = LightSettings::default();
+        settings.lights = LightSettings::for_camera(&settings.camera);
         settings
     }
 

@@ -102,29 +102,51 @@ fn parameters(ui: &mut Ui, method: Method, material: &mut Material) {
         ui.color_edit_button_rgb(&mut material.f0);
         ui.label("reflectance at normal incidence F0");
     });
-    let roughness = |ui: &mut Ui, material: &mut Material| {
-        for (alpha, axis) in material.alpha.iter_mut().zip(["tangent", "bitangent"]) {
-            ui.add(Slider::new(alpha, 0.001..=1.0).logarithmic(true).text(format!("roughness α, {axis}")));
-        }
-        ui.horizontal(|ui| {
-            ui.radio_value(&mut material.normal_target, 0, "Beckmann");
-            ui.radio_value(&mut material.normal_target, 1, "GGX");
-        });
-    };
     match method {
         Method::Smooth => roughness(ui, material),
         Method::Dictionary => {
             roughness(ui, material);
-            ui.add(Slider::new(&mut material.density, 1.0..=1.0e12).logarithmic(true).text("facets / unit²"));
-            ui.add(Slider::new(&mut material.relative_area, 0.0..=1.0).text("relative area"));
+            facets(ui, material);
             ui.add(Slider::new(&mut material.density_randomisation, 0.0..=10.0).text("density randomisation"));
             ui.add(Slider::new(&mut material.max_anisotropy, 1.0..=64.0).logarithmic(true).text("largest anisotropy"));
-            ui.horizontal(|ui| {
-                ui.add(egui::DragValue::new(&mut material.seed));
-                ui.label("seed");
-            });
+        }
+        Method::AreaLight => {
+            base_roughness(ui, material);
+            ui.add(Slider::new(&mut material.lobes, 0..=9).text("lobes by direction (0: round)"));
+            texels(ui, material);
+        }
+        Method::PlainLtc => {
+            base_roughness(ui, material);
+            texels(ui, material);
         }
     }
+}
+
+fn roughness(ui: &mut Ui, material: &mut Material) {
+    for (alpha, axis) in material.alpha.iter_mut().zip(["tangent", "bitangent"]) {
+        ui.add(Slider::new(alpha, 0.001..=1.0).logarithmic(true).text(format!("roughness α, {axis}")));
+    }
+    ui.horizontal(|ui| {
+        ui.radio_value(&mut material.normal_target, 0, "Beckmann");
+        ui.radio_value(&mut material.normal_target, 1, "GGX");
+    });
+}
+
+fn base_roughness(ui: &mut Ui, material: &mut Material) {
+    ui.add(Slider::new(&mut material.alpha[0], 0.001..=1.0).logarithmic(true).text("base roughness α"));
+}
+
+fn facets(ui: &mut Ui, material: &mut Material) {
+    ui.add(Slider::new(&mut material.density, 1.0..=1.0e12).logarithmic(true).text("facets / unit²"));
+    ui.add(Slider::new(&mut material.relative_area, 0.0..=1.0).text("relative area β"));
+    ui.horizontal(|ui| {
+        ui.add(egui::DragValue::new(&mut material.seed));
+        ui.label("seed");
+    });
+}
+
+fn texels(ui: &mut Ui, material: &mut Material) {
+    ui.add(Slider::new(&mut material.texels_per_unit, 1.0..=65_536.0).logarithmic(true).text("texels / unit"));
 }
 
 fn comparison(ui: &mut Ui, controls: &mut Controls, settings: &mut Settings, list: &[Shown]) {

@@ -1,26 +1,11 @@
 //! The adapter, random queries, and the comparison of answers.
 
-use glint_view::gpu::{Gpu, Wish};
+pub use crate::adapter::gpu;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
-use std::sync::OnceLock;
 
 /// Queries a method, at least.
 pub const QUERIES: usize = 10_000;
-
-/// The device, or nothing where there is none and none is required.
-pub fn gpu() -> Option<&'static Gpu> {
-    static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
-    let gpu = GPU.get_or_init(|| match Gpu::headless(&Wish::default()) {
-        Ok(gpu) => Some(gpu),
-        Err(error) if std::env::var_os("GLINT_REQUIRE_ADAPTER").is_some_and(|v| v == "1") => panic!("{error}"),
-        Err(error) => {
-            eprintln!("skipped: {error}");
-            None
-        }
-    });
-    gpu.as_ref()
-}
 
 /// Random numbers of a test.
 pub fn random(seed: u64) -> Pcg64 {

@@ -1,0 +1,143 @@
+//! `glint-bake shaders`: the run time of the methods in an engine's shading language.
+
+use crate::cli::Terminal;
+use crate::exit::{Exit, Failure};
+use crate::output;
+use clap::ValueEnum;
+use clap::builder::PossibleValuesParser;
+use glint_formats::WriteOutcome;
+use glint_formats::provenance::InputDigest;
+use glint_shaders::translate::{self, ShaderFile};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Lines that `--help` shows and a test runs.
+const EXAMPLES: &str = "\
+Examples:
+  glint-bake shaders --lang wgsl -o shaders
+  glint-bake shaders --lang hlsl --method area_light -o shaders";
+
+/// Where the schema of the JSON lives; its `$id`.
+const SCHEMA: &str =
+    "https://raw.githubusercontent.com/glint-bake/glint-bake/main/docs/schema/glint-shaders.schema.json";
+
+/// Write the run time of the methods in a shading language
+///
+/// WGSL is the library as it is: glint_*.wgsl without bindings, bind_*.wgsl and query_*.wgsl as examples of how it is bound
+/// and called. In other languages a file is one compute program that answers queries of one method: it holds all functions of
+/// the library that the method needs.
+#[derive(clap::Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Shading language
+    #[arg(long, value_name = "LANGUAGE")]
+    pub lang: Language,
+    /// Folder to write into; it is created
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Only this method; may be given more than once [default: all]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(translate::methods()))]
+    pub method: Vec<String>,
+    /// Check everything, say what would be done, write nothing
+    #[arg(short = 'n', long, conflicts_with = "json")]
+    pub dry_run: bool,
+    /// Print the list of files to standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Languages that can be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Language {
+    /// WebGPU's, as the library is written (.wgsl)
+    Wgsl,
+    /// Direct3D's, shader model 5.1 (.hlsl)
+    Hlsl,
+    /// OpenGL's, version 4.50 (.comp)
+    Glsl,
+    /// Metal's, version 2.0 (.metal)
+    Msl,
+    /// Vulkan's binary, version 1.0 (.spv)
+    Spirv,
+}
+
+impl Language {
+    fn translated(self) -> translate::Language {
+        match self {
+            Language::Wgsl => translate::Language::Wgsl,
+            Language::Hlsl => translate::Language::Hlsl,
+            Language::Glsl => translate::Language::Glsl,
+            Language::Msl => translate::Language::Msl,
+            Language::Spirv => translate::Language::Spirv,
+        }
+    }
+}
+
+/// What `--json` prints.
+#[derive(Debug, Serialize)]
+struct List {
+    #[serde(rename = "$schema")]
+    schema: &'static str,
+    tool_version: &'static str,
+    language: Language,
+    files: Vec<FileInfo>,
+}
+
+/// One file.
+#[derive(Debug, Serialize)]
+struct FileInfo {
+    file: String,
+    bytes: u64,
+    xxh3_128: String,
+}
+
+/// Runs the subcommand.
+pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
+    let wanted = |method: &&str| args.method.is_empty() || args.method.iter().any(|name| name == method);
+    let methods: Vec<&str> = translate::methods().into_iter().filter(wanted).collect();
+    let files = translate::files(args.lang.translated(), &methods)
+        .map_err(|e| Failure::new(Exit::Unexpected, format!("{e}; please report this")))?;
+    let paths: Vec<PathBuf> = files.iter().map(|file| args.output.join(&file.name)).collect();
+    if args.dry_run {
+        if args.output.exists() {
+            paths.iter().try_for_each(|path| output::check_writable(path))?;
+        }
+        for path in &paths {
+            terminal.say(&format!("would write {}", path.display()));
+        }
+        terminal.say("dry run, nothing was written");
+        return Ok(());
+    }
+    std::fs::create_dir_all(&args.output).map_err(|e| Failure::io(&args.output, "cannot be created", &e))?;
+    paths.iter().try_for_each(|path| output::check_writable(path))?;
+    for (file, path) in files.iter().zip(&paths) {
+        let said = match output::write(path, &file.bytes)? {
+            WriteOutcome::Written => "written",
+            WriteOutcome::Unchanged => "unchanged",
+        };
+        terminal.say(&format!("{}: {said}", path.display()));
+    }
+    if args.json {
+        output::print(&list(args.lang, &files))?;
+    }
+    Ok(())
+}
+
+/// The list as JSON, with a line end.
+fn list(language: Language, files: &[ShaderFile]) -> String {
+    let describe = |file: &ShaderFile| FileInfo {
+        file: file.name.clone(),
+        bytes: file.bytes.len() as u64,
+        xxh3_128: InputDigest::of(&file.name, &file.bytes).xxh3_128,
+    };
+    let list = List {
+        schema: SCHEMA,
+        tool_version: env!("CARGO_PKG_VERSION"),
+        language,
+        files: files.iter().map(describe).collect(),
+    };
+    let mut text = serde_json::to_string_pretty(&list).expect("lists have string keys only");
+    text.push('\n');
+    text
+}

@@ -1,0 +1,9 @@
+//! `glint-view`: packs in a window, as pictures, or as a bench. Only builds with the feature `view` can draw.
+
+mod flags;
+#[cfg(feature = "view")]
+mod run;
+
+pub use flags::Args;
+#[cfg(feature = "view")]
+pub use run::run;

@@ -1,0 +1,320 @@
+//! glint-view at work: packs to the GPU, then pictures, a bench or a window.
+
+use super::flags::{Args, CompareWhen, LightFlag, MaterialFlags, OverlayKind, ShapeKind, TargetKind, Tone};
+use crate::canvas::Canvas;
+use crate::cli::Terminal;
+use crate::exit::{Exit, Failure};
+use crate::info::Report;
+use crate::output;
+use glam::Vec3;
+use glint_formats::{Limits, Pack};
+use glint_view::bench::{BenchSettings, Setup, measure, table};
+use glint_view::gpu::{Gpu, GpuError, Wish};
+use glint_view::render::{
+    LightKind, Material, Overlay, Picture, Renderer, SWAP_LAYERS, Shown, ToneMapping, View, picture,
+};
+use glint_view::scene::{Mesh, MeshError, Orbit, Placement};
+use glint_view::settings::{Against, Layout, Settings};
+use glint_view::subjects::Subjects;
+use glint_view::window::{Hooks, Loaded, Start, WindowError};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+/// Pictures of a turntable when --frames does not say.
+const TURNTABLE: u32 = 36;
+
+/// Runs glint-view.
+pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
+    let placement = args.scene.camera.as_deref().map(Placement::from_str).transpose();
+    let placement = placement.map_err(|error| Failure::usage(format!("--camera {error}")))?;
+    check_outputs(args)?;
+    let limits = Limits { max_file_bytes: args.max_memory, max_raw_bytes: args.max_memory, ..Limits::default() };
+    let reports: Vec<Report> = args.packs.iter().map(|path| Report::of_file(path, &limits)).collect();
+    reports.iter().try_for_each(|report| report.sound().map(|_| ()))?;
+    let mesh = mesh_of(args, terminal)?;
+    if args.picture.opens_window(args.list) {
+        return window(args, placement, reports, mesh, terminal);
+    }
+    let gpu = Gpu::headless(&wish(args)).map_err(failure)?;
+    terminal.detail(&format!("adapter: {}", gpu.adapter_line()));
+    let subjects = upload(&gpu, &reports, &args.material).map_err(failure)?;
+    for note in subjects.notes() {
+        terminal.say(note);
+    }
+    if args.list {
+        return output::print(&list(&gpu, &subjects));
+    }
+    let settings = settings(args, &subjects.shown, Orbit::fit(mesh.bounds()), placement)?;
+    if args.picture.bench {
+        return bench(args, &gpu, &subjects, &settings);
+    }
+    let mut renderer = subjects.renderer(&gpu, &mesh).map_err(failure)?;
+    if let Some(path) = &args.picture.headless {
+        let view = settings.view(&subjects.shown, size(args));
+        return shoot(&gpu, &mut renderer, &view, args.picture.samples, path, terminal);
+    }
+    let Some(folder) = &args.picture.turntable else { return Ok(()) };
+    turntable(args, &gpu, &mut renderer, &subjects.shown, settings, folder, terminal)
+}
+
+fn wish(args: &Args) -> Wish {
+    Wish { name: args.picture.adapter.clone() }
+}
+
+fn size(args: &Args) -> [u32; 2] {
+    [args.picture.size.0, args.picture.size.1]
+}
+
+/// Everything of the packs, which are sound, on a device.
+fn upload(gpu: &Gpu, reports: &[Report], flags: &MaterialFlags) -> Result<Subjects, GpuError> {
+    let packs: Vec<&Pack> = reports.iter().filter_map(Report::pack).collect();
+    let colours: Vec<Vec3> = flags.colour.iter().map(|&colour| colour.into()).collect();
+    Subjects::of_packs(gpu, &packs, &colours)
+}
+
+/// Opens a window on the packs and returns when it is closed.
+fn window(
+    args: &Args,
+    placement: Option<Placement>,
+    reports: Vec<Report>,
+    mesh: Mesh,
+    terminal: Terminal,
+) -> Result<(), Failure> {
+    let name = args.scene.mesh.as_deref().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
+    let mut meshes = vec![("plane".to_owned(), Mesh::plane(2.0)), ("sphere".to_owned(), Mesh::sphere(64))];
+    match (name, args.scene.shape) {
+        (Some(name), _) => meshes.insert(0, (name, mesh)),
+        (None, ShapeKind::Plane) => {}
+        (None, ShapeKind::Sphere) => meshes.swap(0, 1),
+    }
+    let (wishes, flags) = (args.clone(), args.material.clone());
+    let packs: Vec<String> = args.packs.iter().map(|path| path.display().to_string()).collect();
+    let start = Start {
+        title: format!("{} - glint-view", packs.join(" ")),
+        size: size(args),
+        wish: wish(args),
+        meshes,
+        load: Box::new(move |gpu| {
+            let subjects = upload(gpu, &reports, &flags)?;
+            Ok(Loaded { list: subjects.shown, environment: subjects.environment })
+        }),
+        prepare: Box::new(move |list, camera| {
+            settings(&wishes, list, camera, placement).map_err(|failure| failure.message)
+        }),
+        save: Box::new(move |picture| save(picture, terminal)),
+        hooks: Hooks { frames: args.picture.frames, ..Hooks::default() },
+    };
+    glint_view::window::run(start).map_err(|error| match error {
+        WindowError::NoWindow(_) => Failure::new(Exit::Unsupported, error.to_string()),
+        WindowError::Settings(message) => Failure::usage(message),
+        WindowError::Gpu(error) => failure(error),
+    })
+}
+
+/// Saves a screenshot under the first free name.
+fn save(picture: &Picture, terminal: Terminal) -> Result<String, String> {
+    let free = (1..).map(|number| PathBuf::from(format!("glint-view-{number}.png"))).find(|path| !path.exists());
+    let path = free.ok_or("there is no free file name")?;
+    output::write(&path, &png(picture)).map_err(|failure| failure.message)?;
+    let said = format!("{}: written", path.display());
+    terminal.say(&said);
+    Ok(said)
+}
+
+fn failure(error: GpuError) -> Failure {
+    let exit = match error {
+        GpuError::NoAdapter { .. } | GpuError::NoDevice { .. } => Exit::Unsupported,
+        GpuError::Failed(_) => Exit::Unexpected,
+        GpuError::BadPack(_) => Exit::BadInput,
+    };
+    Failure::new(exit, error.to_string())
+}
+
+fn check_outputs(args: &Args) -> Result<(), Failure> {
+    let Some(path) = &args.picture.headless else { return Ok(()) };
+    let inputs: Vec<&Path> = args.packs.iter().chain(&args.scene.mesh).map(|path| path.as_path()).collect();
+    output::check_distinct(&[path], &inputs)?;
+    output::check_writable(path)
+}
+
+fn mesh_of(args: &Args, terminal: Terminal) -> Result<Mesh, Failure> {
+    let Some(path) = &args.scene.mesh else {
+        return Ok(match args.scene.shape {
+            ShapeKind::Plane => Mesh::plane(2.0),
+            ShapeKind::Sphere => Mesh::sphere(64),
+        });
+    };
+    let mesh = Mesh::load(path).map_err(|error| {
+        let exit = match error {
+            MeshError::Io { .. } => Exit::InputOutput,
+            MeshError::Bad { .. } => Exit::BadInput,
+            MeshError::Unsupported { .. } => Exit::Unsupported,
+            MeshError::TooLarge { .. } => Exit::LimitExceeded,
+        };
+        Failure::new(exit, error.to_string())
+    })?;
+    for note in &mesh.notes {
+        terminal.say(&format!("{}: {note}", path.display()));
+    }
+    Ok(mesh)
+}
+
+fn entry_name(shown: &Shown) -> String {
+    if shown.name.is_empty() {
+        shown.method.name().to_owned()
+    } else {
+        format!("{}:{}", shown.method.name(), shown.name)
+    }
+}
+
+fn list(gpu: &Gpu, subjects: &Subjects) -> String {
+    let mut text = format!("adapter  {}\n", gpu.adapter_line());
+    for shown in &subjects.shown {
+        text.push_str(&format!("{}  {} bytes on the GPU\n", entry_name(shown), shown.data.bytes));
+    }
+    text
+}
+
+/// Index of what a flag names: an entry as `--list` prints it, or the first of a method.
+fn find(list: &[Shown], flag: &str, name: &str) -> Result<usize, Failure> {
+    let fits = |shown: &Shown| entry_name(shown) == name || shown.method.name() == name;
+    list.iter().position(fits).ok_or_else(|| {
+        let names: Vec<String> = list.iter().map(entry_name).collect();
+        Failure::usage(format!("{flag} '{name}': the packs have no such entry; there is {}", names.join(", ")))
+    })
+}
+
+/// What the flags ask for, through a camera that sees all of the mesh or is where `placement` says.
+fn settings(args: &Args, list: &[Shown], camera: Orbit, placement: Option<Placement>) -> Result<Settings, Failure> {
+    let mut settings = Settings::new(list, camera);
+    if let Some(placement) = placement {
+        settings.camera.place(placement);
+    }
+    if let Some(name) = &args.view.method {
+        settings.shown = find(list, "--method", name)?;
+    }
+    settings.against = match args.view.against.as_deref() {
+        None => Against::Nothing,
+        Some("reference") => Against::Reference,
+        Some(name) => Against::Other(find(list, "--against", name)?),
+    };
+    settings.layout = match args.view.compare {
+        CompareWhen::Split => Layout::Split(0.5),
+        CompareWhen::Error => Layout::Error,
+    };
+    settings.reference = args.view.reference;
+    settings.overlay = match args.view.overlay {
+        OverlayKind::None => Overlay::None,
+        OverlayKind::Footprint => Overlay::Footprint,
+        OverlayKind::Lod => Overlay::Lod,
+    };
+    settings.tone = match args.view.tone {
+        Tone::Filmic => ToneMapping::Filmic,
+        Tone::Linear => ToneMapping::Linear,
+    };
+    settings.exposure_stops = args.view.exposure;
+    settings.vary_seed = args.view.vary_seed;
+    settings.antialias = args.picture.samples > 1 && !args.view.vary_seed;
+    settings.uv_scale = args.scene.uv_scale as f32;
+    settings.lights.environment.turn = args.scene.turn.to_radians();
+    if let Some(direction) = args.scene.sun {
+        settings.lights.sun.direction = direction.into();
+    }
+    let mut lights: Vec<LightKind> = args.scene.light.iter().map(|light| light.kind()).collect();
+    if lights.is_empty() {
+        lights.push(list[settings.shown].method.usual_light());
+    }
+    settings.lights.only(&lights);
+    for material in &mut settings.materials {
+        apply(&args.material, material);
+    }
+    Ok(settings)
+}
+
+impl LightFlag {
+    fn kind(self) -> LightKind {
+        match self {
+            LightFlag::Sun => LightKind::Sun,
+            LightFlag::Points => LightKind::Points,
+            LightFlag::Rect => LightKind::Rect,
+            LightFlag::Environment => LightKind::Environment,
+        }
+    }
+}
+
+/// What the flags say in place of what the pack says.
+fn apply(flags: &MaterialFlags, material: &mut Material) {
+    if let [first, ..] = flags.alpha[..] {
+        material.alpha = [first as f32, flags.alpha.get(1).copied().unwrap_or(first) as f32];
+    }
+    let set = |to: &mut f32, value: Option<f64>| *to = value.map_or(*to, |value| value as f32);
+    set(&mut material.density, flags.density);
+    set(&mut material.max_anisotropy, flags.max_anisotropy);
+    set(&mut material.intrinsic_roughness, flags.intrinsic_roughness);
+    set(&mut material.texels_per_unit, flags.texels_per_unit);
+    material.normal_target = flags.target.map_or(material.normal_target, |target| match target {
+        TargetKind::Beckmann => 0,
+        TargetKind::Ggx => 1,
+    });
+    material.relative_area = flags.relative_area.unwrap_or(material.relative_area);
+    material.density_randomisation = flags.density_randomisation.unwrap_or(material.density_randomisation);
+    material.f0 = flags.f0.unwrap_or(material.f0);
+    material.lobes = flags.lobes.unwrap_or(material.lobes);
+    material.seed = flags.seed.unwrap_or(material.seed);
+    if flags.swap_layers {
+        material.switches ^= SWAP_LAYERS;
+    }
+}
+
+fn png(picture: &Picture) -> Vec<u8> {
+    let pixels = picture.rgba.chunks_exact(4).flat_map(|pixel| &pixel[..3]).copied().collect();
+    Canvas { width: picture.size[0], height: picture.size[1], pixels }.to_png()
+}
+
+fn shoot(
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    view: &View,
+    samples: u32,
+    path: &Path,
+    terminal: Terminal,
+) -> Result<(), Failure> {
+    let picture = picture(gpu, renderer, view, samples).map_err(failure)?;
+    output::write(path, &png(&picture))?;
+    terminal.say(&format!("{}: written", path.display()));
+    Ok(())
+}
+
+fn turntable(
+    args: &Args,
+    gpu: &Gpu,
+    renderer: &mut Renderer,
+    list: &[Shown],
+    mut settings: Settings,
+    folder: &Path,
+    terminal: Terminal,
+) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|e| Failure::io(folder, "cannot be created", &e))?;
+    let count = args.picture.frames.unwrap_or(TURNTABLE);
+    let start = settings.camera.azimuth;
+    for index in 0..count {
+        settings.camera.azimuth = start + 360.0 * index as f32 / count as f32;
+        let view = settings.view(list, size(args));
+        let path = folder.join(format!("{index:05}.png"));
+        shoot(gpu, renderer, &view, args.picture.samples, &path, terminal)?;
+    }
+    Ok(())
+}
+
+/// Every entry on a wall that fills the picture, each in the light that it is made for.
+fn bench(args: &Args, gpu: &Gpu, subjects: &Subjects, settings: &Settings) -> Result<(), Failure> {
+    let size = size(args);
+    let setup = BenchSettings { frames: args.picture.frames.unwrap_or(20), ..BenchSettings::default() };
+    let mut rows = Vec::new();
+    for index in 0..subjects.shown.len() {
+        for wall in Setup::of(&subjects.shown, index, settings, size) {
+            rows.push(measure(gpu, subjects, &wall, setup).map_err(failure)?);
+        }
+    }
+    output::print(&format!("{}, {} x {}\n\n{}", gpu.adapter_line(), size[0], size[1], table(&rows)))
+}

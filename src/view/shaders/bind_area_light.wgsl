@@ -1,0 +1,21 @@
+// Bindings of an area-light material for glint_area_light.wgsl and glint_ltc.wgsl: group 1. How they are read is in
+// bind_area_light_sampler.wgsl (by samplers, for engines) or bind_area_light_loads.wgsl (to the last bit of a float).
+
+struct AreaLightData {
+    // Texels of the textures' first mip on one texel of the pack's: less than 1 where fine mips were left out on upload.
+    texel_scale: vec2f,
+    @align(16) maps: GlintAreaLightMaps,
+}
+
+@group(1) @binding(0) var<uniform> area_light: AreaLightData;
+// Section ALNM as it is in the pack, RGBA16Float or RGBA8Snorm, all mips.
+@group(1) @binding(1) var area_light_normals: texture_2d<f32>;
+// Section ALRO likewise; one texel of zeros for isotropic materials.
+@group(1) @binding(2) var area_light_roughness: texture_2d<f32>;
+// Sections ALLI and ALLT, RGBA16Float, 64 x 64.
+@group(1) @binding(3) var area_light_inverse: texture_2d<f32>;
+@group(1) @binding(4) var area_light_terms: texture_2d<f32>;
+// Linear within and between mips; repeats or clamps as the map does.
+@group(1) @binding(5) var area_light_sampler: sampler;
+// Linear, clamps.
+@group(1) @binding(6) var area_light_table_sampler: sampler;

@@ -1,0 +1,37 @@
+// What shade_area_light.wgsl is measured against: the same mean normals with one roughness everywhere, material.alpha.x,
+// under the same lights (plain LTC for rectangles). Its reference is itself.
+
+fn shade_plain_ltc_level(point: ViewPoint) -> f32 {
+    let scale = material.texels_per_unit * area_light.texel_scale;
+    let longer2 = max(dot(point.d_dx * scale, point.d_dx * scale), dot(point.d_dy * scale, point.d_dy * scale));
+    return glint_area_light_level(area_light.maps, 2.0 * material.pixel_sigma * sqrt(longer2));
+}
+
+fn shade_plain_ltc_normal(point: ViewPoint) -> vec3f {
+    let position = glint_into_map(area_light.maps, point.uv * (material.texels_per_unit * area_light.texel_scale));
+    return glint_mean_direction(glint_area_light_normals(position, shade_plain_ltc_level(point)).xyz);
+}
+
+fn shade_reflect(point: ViewPoint, light: vec3f) -> vec3f {
+    return glint_ggx_cosine(shade_plain_ltc_normal(point), point.view, light, material.alpha.x, material.f0);
+}
+
+fn shade_reference(point: ViewPoint, light: vec3f, random: vec2f) -> vec3f {
+    return shade_reflect(point, light);
+}
+
+fn shade_rect(point: ViewPoint) -> vec3f {
+    let light = GlintRectLight(
+        view_to_tangent(point, scene.rect[0].xyz - point.position),
+        view_to_tangent(point, scene.rect[1].xyz - point.position),
+        view_to_tangent(point, scene.rect[2].xyz - point.position),
+        view_to_tangent(point, scene.rect[3].xyz - point.position),
+        scene.rect_radiance,
+        scene.rect_two_sided,
+    );
+    return glint_isotropic_radiance(shade_plain_ltc_normal(point), material.alpha.x, point.view, material.f0, light);
+}
+
+fn shade_lod(point: ViewPoint) -> f32 {
+    return shade_plain_ltc_level(point);
+}

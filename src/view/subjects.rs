@@ -1,0 +1,94 @@
+//! What packs hold that can be shown, on the GPU.
+
+use crate::gpu::{Gpu, GpuError, ResourceSet, Resources};
+use crate::methods;
+use crate::render::{Material, Method, Renderer, Shown};
+use crate::scene::Mesh;
+use glam::Vec3;
+use glint_bake_core::error::BakeError;
+use glint_bake_core::{area_light, dictionary};
+use glint_formats::Pack;
+use std::rc::Rc;
+
+/// All that can be shown, and the environment that can light it.
+#[derive(Debug, Default)]
+pub struct Subjects {
+    /// What can be shown, the smooth BRDF last.
+    pub shown: Vec<Shown>,
+    /// What lights a scene whose environment is on; black where no pack has one.
+    pub environment: Option<Rc<Resources>>,
+}
+
+impl Subjects {
+    /// What the user should know: which data was converted for this adapter.
+    pub fn notes(&self) -> Vec<&str> {
+        let resources = self.shown.iter().map(|shown| &shown.data).chain(&self.environment);
+        let mut notes: Vec<&str> = resources.flat_map(|data| data.notes.iter().map(String::as_str)).collect();
+        notes.sort_unstable();
+        notes.dedup();
+        notes
+    }
+
+    /// Uploads what `packs`, which passed verification, hold. Glints of dictionaries have `colours` (linear RGB; none means
+    /// white).
+    pub fn of_packs(gpu: &Gpu, packs: &[&Pack], colours: &[Vec3]) -> Result<Subjects, GpuError> {
+        let mut subjects = Subjects::default();
+        for pack in packs {
+            subjects.add_dictionaries(gpu, pack, colours)?;
+            subjects.add_area_lights(gpu, pack)?;
+        }
+        let empty = ResourceSet::default().finish(gpu);
+        subjects.add(Method::Smooth, "", empty, Material::default());
+        Ok(subjects)
+    }
+
+    /// A renderer of a mesh in the light of the environment, if there is one.
+    pub fn renderer(&self, gpu: &Gpu, mesh: &Mesh) -> Result<Renderer, GpuError> {
+        let mut renderer = Renderer::new(gpu, mesh)?;
+        if let Some(environment) = &self.environment {
+            renderer.set_environment(Rc::clone(environment));
+        }
+        Ok(renderer)
+    }
+
+    fn add(&mut self, method: Method, name: &str, data: Resources, material: Material) {
+        self.share(method, name, &Rc::new(data), material);
+    }
+
+    fn share(&mut self, method: Method, name: &str, data: &Rc<Resources>, material: Material) {
+        self.shown.push(Shown { name: name.to_owned(), method, data: Rc::clone(data), material });
+    }
+
+    fn add_dictionaries(&mut self, gpu: &Gpu, pack: &Pack, colours: &[Vec3]) -> Result<(), GpuError> {
+        for name in dictionary::sections::dictionaries(pack) {
+            let (tables, params) = dictionary::sections::from_pack(pack, name).map_err(bad)?;
+            let mut material = Material { alpha: [params.alpha_dict as f32; 2], ..Material::default() };
+            if !colours.is_empty() {
+                material.colours = colours.len() as u32;
+                material.mean_colour = (colours.iter().sum::<Vec3>() / colours.len() as f32).to_array();
+            }
+            self.add(Method::Dictionary, name, methods::dictionary::upload(gpu, &tables, colours), material);
+        }
+        Ok(())
+    }
+
+    fn add_area_lights(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
+        for name in area_light::sections::materials(pack) {
+            let baked = area_light::sections::from_pack(pack, name).map_err(bad)?;
+            let material = Material {
+                alpha: [0.1; 2],
+                texels_per_unit: baked.params.width as f32,
+                lobes: if baked.params.anisotropic { area_light::eval::LOBES } else { 0 },
+                ..Material::default()
+            };
+            let data = Rc::new(methods::area_light::upload(gpu, &baked));
+            self.share(Method::AreaLight, name, &data, material);
+            self.share(Method::PlainLtc, name, &data, material);
+        }
+        Ok(())
+    }
+}
+
+fn bad(error: BakeError) -> GpuError {
+    GpuError::BadPack(error.to_string())
+}

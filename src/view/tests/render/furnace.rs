@@ -1,0 +1,45 @@
+//! The mean over 1 024 surfaces is the smooth BRDF.
+
+use crate::adapter::gpu;
+use crate::subjects::{index_of, mean_radiance, subjects, wall};
+use glint_view::render::{Method, View};
+
+/// Seeds that are averaged.
+const SEEDS: u32 = 1024;
+
+#[test]
+fn the_mean_over_seeds_is_the_smooth_brdf() {
+    let Some(gpu) = gpu() else { return };
+    let subjects = subjects(gpu);
+    for (method, densities) in [(Method::Dictionary, [1.0e6, 1.0e9])] {
+        let index = index_of(&subjects, method);
+        for density in densities {
+            let (mesh, mut settings, view) = wall(&subjects, index, [48, 32]);
+            let mut renderer = subjects.renderer(gpu, &mesh).unwrap();
+            let camera = view.scene.camera;
+            for material in &mut settings.materials {
+                material.density = density;
+                material.alpha = [0.4, 0.4];
+            }
+            let mut view_of = |shown: Method, vary_seed| {
+                settings.shown = index_of(&subjects, shown);
+                let mut view = View { vary_seed, ..settings.view(&subjects.shown, [48, 32]) };
+                view.scene.camera = camera;
+                view
+            };
+            let glints = view_of(method, true);
+            let smooth = view_of(method.baseline().unwrap(), false);
+            let (mean, _) = mean_radiance(gpu, &mut renderer, &glints, SEEDS);
+            let (one, _) = mean_radiance(gpu, &mut renderer, &glints, 1);
+            let (expected, _) = mean_radiance(gpu, &mut renderer, &smooth, 1);
+            let error = (0..3).map(|c| (mean[c] / expected[c] - 1.0).abs()).fold(0.0, f64::max);
+            println!(
+                "{}, density {density:.0e}: off by {:.3} %, one seed {:.1} %",
+                method.name(),
+                100.0 * error,
+                100.0 * (one[1] / expected[1] - 1.0).abs()
+            );
+            assert!(error < 0.01, "{}: mean {mean:?}, smooth {expected:?}", method.name());
+        }
+    }
+}
