@@ -6,6 +6,7 @@
 //! - `bind_<method>.wgsl`: bindings in group 1 with those accessors, as the viewer and the tests have them. Replace it by your
 //!   engine's.
 //! - `query_<method>.wgsl`: a compute program that answers queries, one an invocation: what the parity tests run.
+//!   query_environment.wgsl takes either of the two bindings of an environment, so it names none.
 //! - `view_*.wgsl` and `shade_<method>.wgsl`: the viewer's own programs, see view_scene.wgsl.
 //!
 //! Order of declarations does not matter in WGSL, so a program is its files one after the other ([`compose`]).
@@ -37,10 +38,21 @@ modules! {
     "glint_dictionary" needs ["glint_hash"];
     "bind_dictionary" needs ["glint_dictionary"];
     "query_dictionary" needs ["bind_dictionary"];
+    "glint_counting" needs [];
+    "query_counting" needs ["glint_counting"];
+    "glint_surface_cells" needs ["glint_hash", "glint_counting"];
+    "glint_environment" needs ["glint_counting"];
+    "bind_environment" needs ["glint_environment"];
+    "bind_environment_exact" needs ["glint_environment"];
+    "query_environment" needs ["glint_environment", "glint_surface_cells"];
     "view_scene" needs [];
     "view_surface" needs ["view_scene", "glint_hash"];
-    "shade_smooth" needs ["view_scene", "glint_brdf"];
+    "shade_smooth_brdf" needs ["view_scene", "glint_brdf"];
+    "shade_smooth" needs ["shade_smooth_brdf"];
     "shade_dictionary" needs ["view_scene", "glint_brdf", "bind_dictionary"];
+    "shade_environment_surface" needs ["view_scene", "bind_environment"];
+    "shade_environment_smooth" needs ["shade_environment_surface"];
+    "shade_environment" needs ["shade_environment_surface", "shade_smooth_brdf", "glint_surface_cells"];
     "shade_rect_points" needs ["view_scene"];
 }
 

@@ -2,5 +2,7 @@
 //!
 //! Without an adapter the tests say that they are skipped; with `GLINT_REQUIRE_ADAPTER=1` they fail instead.
 
+mod counting;
 mod dictionary;
+mod environment;
 mod support;

@@ -1,7 +1,7 @@
 //! The adapter, random queries, and the comparison of answers.
 
 use glint_view::gpu::{Gpu, Wish};
-use rand::SeedableRng;
+use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::sync::OnceLock;
 
@@ -25,6 +25,11 @@ pub fn gpu() -> Option<&'static Gpu> {
 /// Random numbers of a test.
 pub fn random(seed: u64) -> Pcg64 {
     Pcg64::seed_from_u64(seed)
+}
+
+/// A number whose logarithm is uniform.
+pub fn log_uniform(rng: &mut impl Rng, low: f32, high: f32) -> f32 {
+    low * (high / low).powf(rng.random::<f32>())
 }
 
 /// Whether two numbers agree: 1e-3 of the larger, and 1e-5 where both are small.
