@@ -63,15 +63,20 @@ fn glint_normal_upper_quantile(u: f32) -> f32 {
     return x * (4.6647286 + d * (1.424175 + d * (4.9826747e-3 + d * (-2.5789616e-3 + d * high))));
 }
 
+// -log(1 - p) of p <= 1/2.
+fn glint_rare_negative_log1m(p: f32, q: f32) -> f32 {
+    let s = p / (1.0 + q);
+    let t = s * s;
+    let series = 1.0 / 9.0 + t * (1.0 / 11.0 + t * (1.0 / 13.0 + t * (1.0 / 15.0)));
+    return 2.0 * s * (1.0 + t * (1.0 / 3.0 + t * (1.0 / 5.0 + t * (1.0 / 7.0 + t * series))));
+}
+
 // -log(1 - p) to a few units in the last place; at most 88. A logarithm between 1/2 and 2 is never asked for.
 fn glint_negative_log1m(p: f32, q: f32) -> f32 {
     if p > 0.5 {
         return -log(max(q, 1.1754944e-38));
     }
-    let s = p / (1.0 + q);
-    let t = s * s;
-    let series = 1.0 / 9.0 + t * (1.0 / 11.0 + t * (1.0 / 13.0 + t * (1.0 / 15.0)));
-    return 2.0 * s * (1.0 + t * (1.0 / 3.0 + t * (1.0 / 5.0 + t * (1.0 / 7.0 + t * series))));
+    return glint_rare_negative_log1m(p, q);
 }
 
 // (1 - p)^n. p^n is glint_pow1m(q, p, n).
@@ -79,13 +84,16 @@ fn glint_pow1m(p: f32, q: f32, n: f32) -> f32 {
     return exp(-min(n * glint_negative_log1m(p, q), GLINT_LARGEST_EXPONENT));
 }
 
-// 1 - exp(-x) for x >= 0, with a small relative error where it is small.
-fn glint_one_minus_exp(x: f32) -> f32 {
-    if x >= 0.5 {
-        return 1.0 - exp(-min(x, GLINT_LARGEST_EXPONENT));
-    }
+// 1 - exp(-x) for x from 0 to 1/2.
+fn glint_small_one_minus_exp(x: f32) -> f32 {
     let series = 1.0 / 24.0 - x * (1.0 / 120.0 - x * (1.0 / 720.0 - x * (1.0 / 5040.0)));
     return x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * series)));
+}
+
+// 1 - exp(-x) for x >= 0, with a small relative error where it is small.
+fn glint_one_minus_exp(x: f32) -> f32 {
+    let bounded = min(x, GLINT_LARGEST_EXPONENT);
+    return select(glint_small_one_minus_exp(bounded), 1.0 - exp(-bounded), bounded >= 0.5);
 }
 
 // 1 - (1 - p)^n, the chance of at least one hit.
@@ -123,8 +131,10 @@ fn glint_whole_count(n: f32, bits: u32) -> f32 {
 // Hits k with P(hits > k) <= u of n trials with p <= 1/2, q = 1 - p and np at most a few.
 fn glint_few_hits(n: f32, p: f32, q: f32, u: f32) -> f32 {
     let odds = p / q;
-    var density = glint_pow1m(p, q, n);
-    var more = glint_one_minus_pow1m(p, q, n);
+    // (1 - p)^n and 1 - (1 - p)^n, as glint_pow1m and glint_one_minus_pow1m have them for p <= 1/2.
+    let x = min(n * glint_rare_negative_log1m(p, q), GLINT_LARGEST_EXPONENT);
+    var density = exp(-x);
+    var more = select(glint_small_one_minus_exp(x), 1.0 - density, x >= 0.5);
     var k = 0.0;
     for (var step = 0u; step < GLINT_WALK_STEPS; step++) {
         if u >= more {
@@ -195,12 +205,7 @@ fn glint_split(n: GlintCount, left: f32, right: f32, bits: u32) -> GlintSplit {
     return GlintSplit(n, GlintCount(0.0, 0.0));
 }
 
-// Weight of four leaves.
-fn glint_quad_weight(weights: vec4f) -> f32 {
-    return (weights.x + weights.y) + (weights.z + weights.w);
-}
-
-// A subtree of four leaves; words of its top node and its two children.
+// A subtree of four leaves; words of its top node and of its two children.
 fn glint_multinomial_quad(n: GlintCount, weights: vec4f, top: u32, left: u32, right: u32) -> vec4f {
     let halves = glint_split(n, weights.x + weights.y, weights.z + weights.w, top);
     let first = glint_split(halves.hits, weights.x, weights.y, left);
@@ -213,31 +218,55 @@ fn glint_multinomial_quad(n: GlintCount, weights: vec4f, top: u32, left: u32, ri
 
 // How many of `n` >= 0 facets fall to each of the first `levels` (1 to 16) levels, with chances in proportion to weights that
 // are 0 beyond them. Whole numbers that add up to a whole number with mean `n`.
+//
+// Node i has the children 2i and 2i + 1, and its draw reads word i. Leaves are taken four at a time; with up to four there is
+// no dynamic index.
 fn glint_multinomial(n: f32, weights: GlintLevels, levels: u32, words: GlintWords) -> GlintLevels {
     let root = GlintCount(glint_whole_count(n, words.a.x), 0.0);
-    var counts = GlintLevels(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0));
     if levels <= 4u {
         // With two levels the tree's only node is its root.
         let left = select(words.a.z, words.a.y, levels <= 2u);
-        counts.a = glint_multinomial_quad(root, weights.a, words.a.y, left, words.a.w);
-        return counts;
+        let four = glint_multinomial_quad(root, weights.a, words.a.y, left, words.a.w);
+        return GlintLevels(four, vec4f(0.0), vec4f(0.0), vec4f(0.0));
     }
-    let a = glint_quad_weight(weights.a);
-    let b = glint_quad_weight(weights.b);
-    if levels <= 8u {
-        let halves = glint_split(root, a, b, words.a.y);
-        counts.a = glint_multinomial_quad(halves.hits, weights.a, words.a.z, words.b.x, words.b.y);
-        counts.b = glint_multinomial_quad(halves.misses, weights.b, words.a.w, words.b.z, words.b.w);
-        return counts;
+    var weight = array<vec4f, 4>(weights.a, weights.b, weights.c, weights.d);
+    var word = array<vec4u, 4>(words.a, words.b, words.c, words.d);
+    var counts = array<vec4f, 4>(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0));
+    let none = GlintCount(0.0, 0.0);
+    // Facets of the nodes over four leaves.
+    var tops = array<GlintCount, 4>(root, none, none, none);
+    let quads = select(4u, 2u, levels <= 8u);
+    let sums = vec4f(
+        (weights.a.x + weights.a.y) + (weights.a.z + weights.a.w),
+        (weights.b.x + weights.b.y) + (weights.b.z + weights.b.w),
+        (weights.c.x + weights.c.y) + (weights.c.z + weights.c.w),
+        (weights.d.x + weights.d.y) + (weights.d.z + weights.d.w),
+    );
+    // Nodes above them, the root first: two quads have one, four have three.
+    for (var node = 1u; node < quads; node++) {
+        var at = 0u;
+        var second = 1u;
+        var chances = sums.xy;
+        if quads == 4u && node == 1u {
+            second = 2u;
+            chances = vec2f(sums.x + sums.y, sums.z + sums.w);
+        }
+        if node == 3u {
+            at = 2u;
+            second = 3u;
+            chances = sums.zw;
+        }
+        let split = glint_split(tops[at], chances.x, chances.y, word[0][node]);
+        tops[at] = split.hits;
+        tops[second] = split.misses;
     }
-    let c = glint_quad_weight(weights.c);
-    let d = glint_quad_weight(weights.d);
-    let halves = glint_split(root, a + b, c + d, words.a.y);
-    let dark = glint_split(halves.hits, a, b, words.a.z);
-    let bright = glint_split(halves.misses, c, d, words.a.w);
-    counts.a = glint_multinomial_quad(dark.hits, weights.a, words.b.x, words.c.x, words.c.y);
-    counts.b = glint_multinomial_quad(dark.misses, weights.b, words.b.y, words.c.z, words.c.w);
-    counts.c = glint_multinomial_quad(bright.hits, weights.c, words.b.z, words.d.x, words.d.y);
-    counts.d = glint_multinomial_quad(bright.misses, weights.d, words.b.w, words.d.z, words.d.w);
-    return counts;
+    for (var quad = 0u; quad < quads; quad++) {
+        let top = quads + quad;
+        let left = 2u * top;
+        counts[quad] = glint_multinomial_quad(
+            tops[quad], weight[quad], word[top / 4u][top % 4u], word[left / 4u][left % 4u],
+            word[left / 4u][left % 4u + 1u],
+        );
+    }
+    return GlintLevels(counts[0], counts[1], counts[2], counts[3]);
 }

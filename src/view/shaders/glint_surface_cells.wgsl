@@ -79,11 +79,9 @@ fn glint_surface_cells(position: vec2f, lod: f32, seed: u32) -> GlintSurfaceCell
 
 // -ln(1 - h) for h in (0, 1), off by 1e-6 of itself.
 fn glint_exponential(h: f32) -> f32 {
-    if h > 0.5 {
-        return -log(1.0 - h);
-    }
     let high = 0.18720224 + h * (0.5240135 + h * (-0.6401686 + h * 0.9920757));
-    return h * (1.000001 + h * (0.49981508 + h * (0.3389499 + h * high)));
+    let small = h * (1.000001 + h * (0.49981508 + h * (0.3389499 + h * high)));
+    return select(small, -log(1.0 - h), h > 0.5);
 }
 
 fn glint_level_exponential(level: GlintSurfaceLevel, index: u32) -> f32 {
@@ -99,24 +97,20 @@ fn glint_surface_word(cells: GlintSurfaceCells, index: u32) -> u32 {
     return u32(min(glint_one_minus_exp(least) * 4294967296.0, 4294967040.0));
 }
 
-fn glint_surface_word_quad(cells: GlintSurfaceCells, first: u32) -> vec4u {
-    return vec4u(
-        glint_surface_word(cells, first), glint_surface_word(cells, first + 1u),
-        glint_surface_word(cells, first + 2u), glint_surface_word(cells, first + 3u),
-    );
-}
-
-// The words that a multinomial draw of `levels` levels reads.
+// The words that a multinomial draw of `levels` levels reads: small where the facet of a fraction is there, large where the
+// brighter branch of a node gets more.
 fn glint_surface_words(cells: GlintSurfaceCells, levels: u32) -> GlintWords {
-    var words = GlintWords(vec4u(0u), vec4u(0u), vec4u(0u), vec4u(0u));
-    let first = glint_surface_word_quad(cells, 0u);
-    words.a = vec4u(first.x, ~first.yzw);
-    if levels > 4u {
-        words.b = ~glint_surface_word_quad(cells, 4u);
+    let first = vec4u(
+        glint_surface_word(cells, 0u), ~glint_surface_word(cells, 1u),
+        ~glint_surface_word(cells, 2u), ~glint_surface_word(cells, 3u),
+    );
+    if levels <= 4u {
+        return GlintWords(first, vec4u(0u), vec4u(0u), vec4u(0u));
     }
-    if levels > 8u {
-        words.c = ~glint_surface_word_quad(cells, 8u);
-        words.d = ~glint_surface_word_quad(cells, 12u);
+    var words = array<vec4u, 4>(first, vec4u(0u), vec4u(0u), vec4u(0u));
+    let leaves = select(16u, 8u, levels <= 8u);
+    for (var i = 4u; i < leaves; i++) {
+        words[i / 4u][i % 4u] = ~glint_surface_word(cells, i);
     }
-    return words;
+    return GlintWords(words[0], words[1], words[2], words[3]);
 }
