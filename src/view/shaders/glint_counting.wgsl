@@ -205,6 +205,11 @@ fn glint_split(n: GlintCount, left: f32, right: f32, bits: u32) -> GlintSplit {
     return GlintSplit(n, GlintCount(0.0, 0.0));
 }
 
+// Weight of four leaves.
+fn glint_quad_weight(weights: vec4f) -> f32 {
+    return (weights.x + weights.y) + (weights.z + weights.w);
+}
+
 // A subtree of four leaves; words of its top node and of its two children.
 fn glint_multinomial_quad(n: GlintCount, weights: vec4f, top: u32, left: u32, right: u32) -> vec4f {
     let halves = glint_split(n, weights.x + weights.y, weights.z + weights.w, top);
@@ -219,54 +224,40 @@ fn glint_multinomial_quad(n: GlintCount, weights: vec4f, top: u32, left: u32, ri
 // How many of `n` >= 0 facets fall to each of the first `levels` (1 to 16) levels, with chances in proportion to weights that
 // are 0 beyond them. Whole numbers that add up to a whole number with mean `n`.
 //
-// Node i has the children 2i and 2i + 1, and its draw reads word i. Leaves are taken four at a time; with up to four there is
+// Node i has the children 2i and 2i + 1, and its draw reads word i. Leaves are taken four at a time; with up to eight there is
 // no dynamic index.
 fn glint_multinomial(n: f32, weights: GlintLevels, levels: u32, words: GlintWords) -> GlintLevels {
     let root = GlintCount(glint_whole_count(n, words.a.x), 0.0);
+    let none = vec4f(0.0);
     if levels <= 4u {
         // With two levels the tree's only node is its root.
         let left = select(words.a.z, words.a.y, levels <= 2u);
-        let four = glint_multinomial_quad(root, weights.a, words.a.y, left, words.a.w);
-        return GlintLevels(four, vec4f(0.0), vec4f(0.0), vec4f(0.0));
+        return GlintLevels(glint_multinomial_quad(root, weights.a, words.a.y, left, words.a.w), none, none, none);
     }
-    var weight = array<vec4f, 4>(weights.a, weights.b, weights.c, weights.d);
-    var word = array<vec4u, 4>(words.a, words.b, words.c, words.d);
-    var counts = array<vec4f, 4>(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0));
-    let none = GlintCount(0.0, 0.0);
-    // Facets of the nodes over four leaves.
-    var tops = array<GlintCount, 4>(root, none, none, none);
-    let quads = select(4u, 2u, levels <= 8u);
-    let sums = vec4f(
-        (weights.a.x + weights.a.y) + (weights.a.z + weights.a.w),
-        (weights.b.x + weights.b.y) + (weights.b.z + weights.b.w),
-        (weights.c.x + weights.c.y) + (weights.c.z + weights.c.w),
-        (weights.d.x + weights.d.y) + (weights.d.z + weights.d.w),
-    );
-    // Nodes above them, the root first: two quads have one, four have three.
-    for (var node = 1u; node < quads; node++) {
-        var at = 0u;
-        var second = 1u;
-        var chances = sums.xy;
-        if quads == 4u && node == 1u {
-            second = 2u;
-            chances = vec2f(sums.x + sums.y, sums.z + sums.w);
-        }
-        if node == 3u {
-            at = 2u;
-            second = 3u;
-            chances = sums.zw;
-        }
-        let split = glint_split(tops[at], chances.x, chances.y, word[0][node]);
-        tops[at] = split.hits;
-        tops[second] = split.misses;
-    }
-    for (var quad = 0u; quad < quads; quad++) {
-        let top = quads + quad;
-        let left = 2u * top;
-        counts[quad] = glint_multinomial_quad(
-            tops[quad], weight[quad], word[top / 4u][top % 4u], word[left / 4u][left % 4u],
-            word[left / 4u][left % 4u + 1u],
+    let a = glint_quad_weight(weights.a);
+    let b = glint_quad_weight(weights.b);
+    if levels <= 8u {
+        let halves = glint_split(root, a, b, words.a.y);
+        return GlintLevels(
+            glint_multinomial_quad(halves.hits, weights.a, words.a.z, words.b.x, words.b.y),
+            glint_multinomial_quad(halves.misses, weights.b, words.a.w, words.b.z, words.b.w),
+            none, none,
         );
+    }
+    let c = glint_quad_weight(weights.c);
+    let d = glint_quad_weight(weights.d);
+    let halves = glint_split(root, a + b, c + d, words.a.y);
+    let dark = glint_split(halves.hits, a, b, words.a.z);
+    let bright = glint_split(halves.misses, c, d, words.a.w);
+    var tops = array<GlintCount, 4>(dark.hits, dark.misses, bright.hits, bright.misses);
+    var weight = array<vec4f, 4>(weights.a, weights.b, weights.c, weights.d);
+    var top = array<u32, 4>(words.b.x, words.b.y, words.b.z, words.b.w);
+    var left = array<u32, 4>(words.c.x, words.c.z, words.d.x, words.d.z);
+    var right = array<u32, 4>(words.c.y, words.c.w, words.d.y, words.d.w);
+    var counts = array<vec4f, 4>(none, none, none, none);
+    // A loop, which keeps the program small.
+    for (var quad = 0u; quad < 4u; quad++) {
+        counts[quad] = glint_multinomial_quad(tops[quad], weight[quad], top[quad], left[quad], right[quad]);
     }
     return GlintLevels(counts[0], counts[1], counts[2], counts[3]);
 }

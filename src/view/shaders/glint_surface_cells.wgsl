@@ -107,9 +107,15 @@ fn glint_surface_words(cells: GlintSurfaceCells, levels: u32) -> GlintWords {
     if levels <= 4u {
         return GlintWords(first, vec4u(0u), vec4u(0u), vec4u(0u));
     }
-    var words = array<vec4u, 4>(first, vec4u(0u), vec4u(0u), vec4u(0u));
-    let leaves = select(16u, 8u, levels <= 8u);
-    for (var i = 4u; i < leaves; i++) {
+    let second = vec4u(
+        ~glint_surface_word(cells, 4u), ~glint_surface_word(cells, 5u),
+        ~glint_surface_word(cells, 6u), ~glint_surface_word(cells, 7u),
+    );
+    if levels <= 8u {
+        return GlintWords(first, second, vec4u(0u), vec4u(0u));
+    }
+    var words = array<vec4u, 4>(first, second, vec4u(0u), vec4u(0u));
+    for (var i = 8u; i < 16u; i++) {
         words[i / 4u][i % 4u] = ~glint_surface_word(cells, i);
     }
     return GlintWords(words[0], words[1], words[2], words[3]);
