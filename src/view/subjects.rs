@@ -6,7 +6,7 @@ use crate::render::{Material, Method, Renderer, Shown};
 use crate::scene::Mesh;
 use glam::Vec3;
 use glint_bake_core::error::BakeError;
-use glint_bake_core::{area_light, dictionary};
+use glint_bake_core::{area_light, dictionary, environment};
 use glint_formats::Pack;
 use std::rc::Rc;
 
@@ -17,6 +17,7 @@ pub struct Subjects {
     pub shown: Vec<Shown>,
     /// What lights a scene whose environment is on; black where no pack has one.
     pub environment: Option<Rc<Resources>>,
+    left_out: Vec<String>,
 }
 
 impl Subjects {
@@ -24,6 +25,7 @@ impl Subjects {
     pub fn notes(&self) -> Vec<&str> {
         let resources = self.shown.iter().map(|shown| &shown.data).chain(&self.environment);
         let mut notes: Vec<&str> = resources.flat_map(|data| data.notes.iter().map(String::as_str)).collect();
+        notes.extend(self.left_out.iter().map(String::as_str));
         notes.sort_unstable();
         notes.dedup();
         notes
@@ -35,6 +37,7 @@ impl Subjects {
         let mut subjects = Subjects::default();
         for pack in packs {
             subjects.add_dictionaries(gpu, pack, colours)?;
+            subjects.add_environments(gpu, pack)?;
             subjects.add_area_lights(gpu, pack)?;
         }
         let empty = ResourceSet::default().finish(gpu);
@@ -56,7 +59,8 @@ impl Subjects {
     }
 
     fn share(&mut self, method: Method, name: &str, data: &Rc<Resources>, material: Material) {
-        self.shown.push(Shown { name: name.to_owned(), method, data: Rc::clone(data), material });
+        let (name, data) = (name.to_owned(), Rc::clone(data));
+        self.shown.push(Shown { name, method, data, material, constants: Vec::new() });
     }
 
     fn add_dictionaries(&mut self, gpu: &Gpu, pack: &Pack, colours: &[Vec3]) -> Result<(), GpuError> {
@@ -68,6 +72,26 @@ impl Subjects {
                 material.mean_colour = (colours.iter().sum::<Vec3>() / colours.len() as f32).to_array();
             }
             self.add(Method::Dictionary, name, methods::dictionary::upload(gpu, &tables, colours), material);
+        }
+        Ok(())
+    }
+
+    /// The first environment lights the scene; the others would need one of their own.
+    fn add_environments(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
+        for name in environment::sections::environments(pack) {
+            if self.environment.is_some() {
+                self.left_out.push(format!("environment '{name}' is left out: a scene has one, the first"));
+                continue;
+            }
+            let baked = environment::sections::from_pack(pack, name).map_err(bad)?;
+            let constants = vec![
+                ("ENVIRONMENT_LEVELS", baked.params.levels.len() as f64),
+                ("ENVIRONMENT_COLOURED", f64::from(u8::from(baked.params.coloured))),
+            ];
+            self.environment = Some(Rc::new(methods::environment::upload(gpu, &baked)));
+            let data = Rc::new(ResourceSet::default().finish(gpu));
+            let material = Material { alpha: [0.25; 2], ..Material::default() };
+            self.shown.push(Shown { name: name.to_owned(), method: Method::Environment, data, material, constants });
         }
         Ok(())
     }

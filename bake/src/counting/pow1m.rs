@@ -65,7 +65,11 @@ pub fn pow1m(p: f32, q: f32, n: f32) -> f32 {
 
 /// 1 − (1 − p)^n with the given elementary functions; see [`one_minus_pow1m()`].
 pub fn one_minus_pow1m_with(math: &impl Elementary, p: f32, q: f32, n: f32) -> f32 {
-    let x = (n * negative_log1m(math, p, q)).min(LARGEST_EXPONENT);
+    one_minus_exp(math, (n * negative_log1m(math, p, q)).min(LARGEST_EXPONENT))
+}
+
+/// 1 − exp(−x) for x ≥ 0, with a small *relative* error where it is small.
+pub fn one_minus_exp(math: &impl Elementary, x: f32) -> f32 {
     if x >= 0.5 {
         return 1.0 - math.exp(-x);
     }

@@ -5,10 +5,10 @@
 //! `counting`. Deviation: [`spread_factor`] brings the second moment of that to the one that was filtered besides
 //! radiance, so the variance of glints is right for any levels.
 
-use super::cube::{face_direction, face_of};
 use super::tables::Environment;
 use glam::Vec3;
 use glint_formats::environment::MAX_LEVELS;
+use std::ops::Neg;
 
 /// Four texels of a cube and their weights, as seamless linear filtering takes them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -19,26 +19,54 @@ pub struct Taps {
     pub weights: [f32; 4],
 }
 
+/// Face that (x, y, z) goes through, and numerators and denominator of its (s, t); X goes before Y before Z where two
+/// are as large.
+fn face_fraction<N: Copy + PartialOrd + Neg<Output = N>>([x, y, z]: [N; 3], zero: N) -> (usize, N, N, N) {
+    let abs = |v: N| if v < zero { -v } else { v };
+    let (ax, ay, az) = (abs(x), abs(y), abs(z));
+    if ax >= ay && ax >= az {
+        if x > zero { (0, -z, -y, ax) } else { (1, z, -y, ax) }
+    } else if ay >= az {
+        if y > zero { (2, x, z, ay) } else { (3, x, -z, ay) }
+    } else if z > zero {
+        (4, x, -y, az)
+    } else {
+        (5, -x, -y, az)
+    }
+}
+
+/// The texel at column i and row j of a face, which may lie one beyond its edge: there it is the texel of the next face.
+/// Whole numbers only, so that no rounding decides.
+fn seamless_texel(face: usize, i: i32, j: i32, size: i32) -> (usize, u32, u32) {
+    if (0..size).contains(&i) && (0..size).contains(&j) {
+        return (face, i as u32, j as u32);
+    }
+    let (s, t) = (2 * i + 1 - size, 2 * j + 1 - size);
+    let direction = match face {
+        0 => [size, -t, -s],
+        1 => [-size, -t, s],
+        2 => [s, size, t],
+        3 => [s, -size, -t],
+        4 => [s, -t, size],
+        _ => [-s, -t, -size],
+    };
+    let (face, s, t, whole) = face_fraction(direction, 0);
+    let cell = |c: i32| ((c + whole) * size / (2 * whole)).clamp(0, size - 1) as u32;
+    (face, cell(s), cell(t))
+}
+
 /// The texels around a direction on faces of `size` texels.
 pub fn cube_taps(direction: Vec3, size: u32) -> Taps {
-    let (face, s, t) = face_of(direction.as_dvec3());
-    let place = |c: f64| 0.5 * (c + 1.0) * f64::from(size) - 0.5;
+    let (face, s, t, whole) = face_fraction(direction.to_array(), 0.0);
+    let place = |c: f32| 0.5 * (c / whole + 1.0) * size as f32 - 0.5;
     let (x, y) = (place(s), place(t));
     let (i, j) = (x.floor(), y.floor());
-    let (fx, fy) = ((x - i) as f32, (y - j) as f32);
-    let texel = |i: f64, j: f64| {
-        let inside = |c: f64| c >= 0.0 && c < f64::from(size);
-        if inside(i) && inside(j) {
-            return (face, i as u32, j as u32);
-        }
-        // Beyond the edge: the texel of the next face that lies there.
-        let back = |c: f64| 2.0 * (c + 0.5) / f64::from(size) - 1.0;
-        let (face, s, t) = face_of(face_direction(face, back(i), back(j)));
-        let cell = |c: f64| (0.5 * (c + 1.0) * f64::from(size)).clamp(0.0, f64::from(size - 1)) as u32;
-        (face, cell(s), cell(t))
-    };
+    let (fx, fy) = (x - i, y - j);
+    let last = size as i32 - 1;
+    let (i, j) = ((i as i32).clamp(-1, last), (j as i32).clamp(-1, last));
+    let texel = |i: i32, j: i32| seamless_texel(face, i, j, size as i32);
     Taps {
-        texels: [texel(i, j), texel(i + 1.0, j), texel(i, j + 1.0), texel(i + 1.0, j + 1.0)],
+        texels: [texel(i, j), texel(i + 1, j), texel(i, j + 1), texel(i + 1, j + 1)],
         weights: [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy],
     }
 }

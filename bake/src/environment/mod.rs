@@ -4,7 +4,8 @@
 //! image ([`image`]) becomes a cube ([`cube`]) whose mips are filtered with a GGX lobe each ([`kernel`], [`prefilter`]):
 //! radiance, its square, and the share of each of a few radiance levels ([`levels`]). At run time ([`eval`]) the
 //! shares are the probabilities that a facet reflects each level, scaled by areas that depend on view angle and
-//! roughness only ([`albedo`]), and [`glints`] draws. [`reference`] sums over every pixel in f64, and [`quality`] measures one by the other.
+//! roughness only ([`albedo`]), and [`glints`] draws,
+//! with the random words of a place on the surface ([`cells`]). [`reference`] sums over every pixel in f64, and [`quality`] measures one by the other.
 //!
 //! What deviates from the paper, and why, stands on top of each file and in `docs/METHODS.md`. The main points:
 //! - filtering to an error bound by a tree of the source, without samples ([`tree`], [`blocks`], [`filter_sum`]);
@@ -16,6 +17,7 @@
 pub mod albedo;
 pub mod bake;
 pub mod blocks;
+pub mod cells;
 pub mod cube;
 pub mod eval;
 pub mod filter_sum;

@@ -2,3 +2,4 @@
 
 pub mod area_light;
 pub mod dictionary;
+pub mod environment;

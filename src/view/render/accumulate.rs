@@ -12,7 +12,7 @@ pub(super) struct Accumulate {
 
 impl Accumulate {
     pub fn new(gpu: &Gpu) -> Result<Accumulate, GpuError> {
-        Ok(Accumulate { pipeline: full_screen::pipeline(gpu, "view_accumulate", RADIANCE)? })
+        Ok(Accumulate { pipeline: full_screen::pipeline(gpu, "mean", RADIANCE)? })
     }
 
     /// Adds the last frame of `side`, the `count`th, to the mean; both parities of `count` have their own texture.

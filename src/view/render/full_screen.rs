@@ -4,7 +4,7 @@ use crate::gpu::{Gpu, GpuError};
 
 /// The pipeline of a program that covers its target and reads a uniform and two textures.
 pub(super) fn pipeline(gpu: &Gpu, file: &str, format: wgpu::TextureFormat) -> Result<wgpu::RenderPipeline, GpuError> {
-    let module = gpu.shader(file, &glint_shaders::compose(&[file]))?;
+    let module = gpu.shader(name, &glint_shaders::program(name))?;
     let texture = |binding| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::FRAGMENT,
@@ -34,9 +34,9 @@ pub(super) fn pipeline(gpu: &Gpu, file: &str, format: wgpu::TextureFormat) -> Re
         bind_group_layouts: &[Some(&layout)],
         immediate_size: 0,
     });
-    gpu.checked(file, || {
+    gpu.checked(name, || {
         gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(file),
+            label: Some(name),
             layout: Some(&layout),
             vertex: wgpu::VertexState {
                 module: &module,

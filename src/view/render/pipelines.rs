@@ -38,9 +38,8 @@ impl Pipelines {
     ) -> Result<&wgpu::RenderPipeline, GpuError> {
         if !self.pipelines.contains_key(&key) {
             if !self.modules.contains_key(&key.method) {
-                let mut files = vec!["view_surface"];
-                files.extend(key.method.files());
-                let module = gpu.shader(key.method.name(), &glint_shaders::compose(&files))?;
+                let name = key.method.name();
+                let module = gpu.shader(name, &glint_shaders::program(name))?;
                 self.modules.insert(key.method, module);
             }
             let groups = [scene, &data.layout, &environment.layout];
@@ -59,7 +58,7 @@ impl Pipelines {
         environment: &Resources,
     ) -> Result<&wgpu::RenderPipeline, GpuError> {
         if !self.backgrounds.contains_key(&lights) {
-            let module = gpu.shader("background", &glint_shaders::compose(&BACKGROUND))?;
+            let module = gpu.shader("background", &glint_shaders::program("background"))?;
             let nothing = ResourceSet::default().finish(gpu);
             let groups = [scene, &nothing.layout, &environment.layout];
             let drawing = Drawing { label: "background", module: &module, groups, buffers: &[], covers: false };
@@ -68,9 +67,6 @@ impl Pipelines {
         Ok(&self.backgrounds[&lights])
     }
 }
-
-/// Files of the program that draws the background.
-const BACKGROUND: [&str; 2] = ["view_background", "shade_background_none"];
 
 /// What pipelines that draw radiance with depth differ in.
 struct Drawing<'a> {

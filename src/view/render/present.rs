@@ -94,7 +94,7 @@ pub(super) struct Present {
 
 impl Present {
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Result<Present, GpuError> {
-        Ok(Present { format, pipeline: full_screen::pipeline(gpu, "view_present", format)? })
+        Ok(Present { format, pipeline: full_screen::pipeline(gpu, "display", format)? })
     }
 
     #[allow(clippy::too_many_arguments, reason = "one call; a struct of these would only name them twice")]

@@ -8,6 +8,7 @@ use super::targets::{Targets, view};
 use super::timing::Timing;
 use super::uniforms::{Material, Scene, SceneUniform};
 use crate::gpu::{Gpu, GpuError, ResourceSet, Resources, read_back};
+use crate::methods::environment;
 use crate::scene::Mesh;
 use glam::Vec2;
 use std::rc::Rc;
@@ -123,7 +124,7 @@ impl Renderer {
         });
         Ok(Renderer {
             mesh: mesh_buffers(gpu, mesh),
-            environment: Rc::new(ResourceSet::default().finish(gpu)),
+            environment: Rc::new(environment::empty(gpu)),
             nothing: ResourceSet::default().finish(gpu),
             scene_layout,
             pipelines: Pipelines::default(),
@@ -207,13 +208,13 @@ impl Renderer {
             material.seed = material.seed.wrapping_add(self.frames);
         }
         let group = scene_group(gpu, &self.scene_layout, &scene, &material);
-        let constants = side.shown.method.constants(&material);
+        let constants = side.shown.constants.iter().copied().chain(side.shown.method.constants(&material));
         let key = Key {
             method: side.shown.method,
             lights: view_of.scene.lights.bits(),
             reference: side.reference,
             overlay: view_of.display.overlay.number(),
-            constants: constants.into_iter().map(|(name, value)| (name, value.to_bits())).collect(),
+            constants: constants.map(|(name, value)| (name, value.to_bits())).collect(),
         };
         let data = &side.shown.data;
         let lights = key.lights;

@@ -24,6 +24,8 @@ pub enum Method {
     Smooth,
     /// Slope dictionary.
     Dictionary,
+    /// Environment with glints, by radiance levels.
+    Environment,
     /// Multi-scale LTC: mean normals with the roughness of what they average.
     AreaLight,
     /// The same normals with one roughness everywhere: plain LTC.
@@ -33,7 +35,6 @@ pub enum Method {
 /// What is known of a method.
 struct Facts {
     name: &'static str,
-    files: &'static [&'static str],
     light: LightKind,
     baseline: Option<Method>,
     has_map: bool,
@@ -44,28 +45,30 @@ impl Method {
         match self {
             Method::Smooth => Facts {
                 name: "smooth",
-                files: &["shade_smooth", "shade_rect_points", "shade_environment_none"],
                 light: LightKind::Sun,
                 baseline: None,
                 has_map: false,
             },
             Method::Dictionary => Facts {
                 name: "dictionary",
-                files: &["shade_dictionary", "shade_rect_points", "shade_environment_none"],
                 light: LightKind::Sun,
+                baseline: Some(Method::Smooth),
+                has_map: false,
+            },
+            Method::Environment => Facts {
+                name: "environment",
+                light: LightKind::Environment,
                 baseline: Some(Method::Smooth),
                 has_map: false,
             },
             Method::AreaLight => Facts {
                 name: "area-light",
-                files: &["shade_area_light", "shade_environment_none"],
                 light: LightKind::Rect,
                 baseline: Some(Method::PlainLtc),
                 has_map: true,
             },
             Method::PlainLtc => Facts {
                 name: "plain-ltc",
-                files: &["shade_plain_ltc", "shade_environment_none"],
                 light: LightKind::Rect,
                 baseline: None,
                 has_map: true,
@@ -73,7 +76,7 @@ impl Method {
         }
     }
 
-    /// Name on the command line and in reports.
+    /// Name on the command line, in reports, and of its program in [`glint_shaders::SHADING`].
     pub fn name(self) -> &'static str {
         self.facts().name
     }
@@ -93,12 +96,7 @@ impl Method {
         self.facts().has_map
     }
 
-    /// The WGSL files of its program.
-    pub(super) fn files(self) -> &'static [&'static str] {
-        self.facts().files
-    }
-
-    /// Pipeline constants of its program beyond those of view_surface.wgsl, for a material.
+    /// Pipeline constants of its program that follow from a material.
     pub(super) fn constants(self, material: &Material) -> Vec<(&'static str, f64)> {
         match self {
             Method::AreaLight => vec![("AREA_LIGHT_DIRECTIONAL", f64::from(u8::from(material.lobes > 0)))],
@@ -118,4 +116,6 @@ pub struct Shown {
     pub data: Rc<Resources>,
     /// Parameters.
     pub material: Material,
+    /// Pipeline constants that follow from the data.
+    pub constants: Vec<(&'static str, f64)>,
 }

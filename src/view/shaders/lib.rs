@@ -6,6 +6,7 @@
 //! - `bind_<method>.wgsl`: bindings in group 1 with those accessors, as the viewer and the tests have them. Replace it by your
 //!   engine's.
 //! - `query_<method>.wgsl`: a compute program that answers queries, one an invocation: what the parity tests run.
+//!   query_environment.wgsl takes either of the two bindings of an environment, so it names none.
 //! - `view_*.wgsl` and `shade_<method>.wgsl`: the viewer's own programs, see view_scene.wgsl.
 //!
 //! Order of declarations does not matter in WGSL, so a program is its files one after the other ([`compose`]).
@@ -46,19 +47,70 @@ modules! {
     "bind_area_light_sampler" needs ["bind_area_light"];
     "bind_area_light_loads" needs ["bind_area_light"];
     "query_area_light" needs ["bind_area_light_loads", "glint_ggx"];
+    "glint_counting" needs [];
+    "query_counting" needs ["glint_counting"];
+    "glint_surface_cells" needs ["glint_hash", "glint_counting"];
+    "glint_environment" needs ["glint_counting"];
+    "bind_environment" needs ["glint_environment"];
+    "bind_environment_exact" needs ["glint_environment"];
+    "query_environment" needs ["glint_environment", "glint_surface_cells"];
     "view_scene" needs [];
     "view_surface" needs ["view_scene", "view_sky", "glint_brdf", "glint_hash"];
     "view_sky" needs [];
     "view_background" needs ["view_scene", "view_sky"];
     "view_accumulate" needs [];
     "view_present" needs [];
-    "shade_background_none" needs [];
-    "shade_environment_none" needs ["view_scene"];
-    "shade_smooth" needs ["view_scene", "glint_brdf"];
+    "shade_smooth_brdf" needs ["view_scene", "glint_brdf"];
+    "shade_smooth" needs ["shade_smooth_brdf"];
     "shade_dictionary" needs ["view_scene", "glint_brdf", "bind_dictionary"];
     "shade_area_light" needs ["view_scene", "bind_area_light_sampler", "glint_ggx", "glint_hash"];
     "shade_plain_ltc" needs ["view_scene", "bind_area_light_sampler", "glint_ggx"];
+    "shade_background" needs ["view_scene", "bind_environment"];
+    "shade_environment_surface" needs ["view_scene", "bind_environment"];
+    "shade_environment_smooth" needs ["shade_environment_surface"];
+    "shade_environment" needs ["shade_environment_surface", "shade_smooth_brdf", "glint_surface_cells"];
     "shade_rect_points" needs ["view_scene"];
+}
+
+/// A program of the viewer: its name, and the files that give each hook of view_scene.wgsl once.
+pub type Program = (&'static str, &'static [&'static str]);
+
+/// Programs that shade a surface, by method.
+pub const SHADING: &[Program] = &[
+    ("smooth", &["view_surface", "shade_smooth", "shade_rect_points", "shade_environment_smooth"]),
+    ("dictionary", &["view_surface", "shade_dictionary", "shade_rect_points", "shade_environment_smooth"]),
+    ("environment", &["view_surface", "shade_environment", "shade_rect_points"]),
+    ("area-light", &["view_surface", "shade_area_light", "shade_environment_smooth"]),
+    ("plain-ltc", &["view_surface", "shade_plain_ltc", "shade_environment_smooth"]),
+];
+
+/// What draws behind the mesh, and what covers the picture.
+pub const PASSES: &[Program] = &[
+    ("background", &["view_background", "shade_background"]),
+    ("mean", &["view_accumulate"]),
+    ("display", &["view_present"]),
+];
+
+/// The text of the program that shades a method, or of a pass.
+///
+/// # Panics
+/// If there is none of this name: names are constants of this workspace.
+pub fn program(name: &str) -> String {
+    let found = SHADING.iter().chain(PASSES).find(|program| program.0 == name);
+    compose(found.unwrap_or_else(|| panic!("there is no program {name}")).1)
+}
+
+/// Files of the program that answers queries of a method, with the bindings of `bind_<method>.wgsl` where its files ask for
+/// no others.
+///
+/// # Panics
+/// If there is no such program.
+pub fn query_files(method: &str) -> Vec<&'static str> {
+    let query = format!("query_{method}");
+    let query = module(&query).unwrap_or_else(|| panic!("there is no {query}.wgsl"));
+    let is_bound = parts(&[query.name]).iter().any(|module| module.name.starts_with("bind_"));
+    let bindings = module(&format!("bind_{method}")).filter(|_| !is_bound);
+    [query].into_iter().chain(bindings).map(|module| module.name).collect()
 }
 
 /// The file `name`; `None` if there is none.

@@ -111,9 +111,9 @@ fn library(methods: &[&str]) -> Vec<ShaderFile> {
 /// One program in another language.
 fn translate(language: Language, program: &'static Module) -> Result<Vec<u8>, TranslateError> {
     let fail = |reason: String| TranslateError { program: program.name, language, reason };
-    let source = crate::compose(&[program.name]);
+    let source = crate::compose(&crate::query_files(program.name.trim_start_matches(QUERY)));
     let module = naga::front::wgsl::parse_str(&source).map_err(|e| fail(e.emit_to_string(&source)))?;
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+    let info = Validator::new(ValidationFlags::all(), Capabilities::CUBE_ARRAY_TEXTURES)
         .validate(&module)
         .map_err(|e| fail(e.emit_to_string(&source)))?;
     let text = match language {

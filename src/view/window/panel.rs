@@ -110,6 +110,10 @@ fn parameters(ui: &mut Ui, method: Method, material: &mut Material) {
             ui.add(Slider::new(&mut material.density_randomisation, 0.0..=10.0).text("density randomisation"));
             ui.add(Slider::new(&mut material.max_anisotropy, 1.0..=64.0).logarithmic(true).text("largest anisotropy"));
         }
+        Method::Environment => {
+            roughness(ui, material);
+            facets(ui, material);
+        }
         Method::AreaLight => {
             base_roughness(ui, material);
             ui.add(Slider::new(&mut material.lobes, 0..=9).text("lobes by direction (0: round)"));

@@ -1,34 +1,39 @@
-//! Every program of the viewer is sound WGSL, whatever adapter there is.
+//! Every program of the viewer and of the tests is sound WGSL, whatever adapter there is.
 
-use glint_shaders::compose;
+use glint_shaders::{MODULES, PASSES, SHADING, compose, program};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-/// Hooks that a program must have once, see view_scene.wgsl.
+/// Hooks that a shading program must have once, see view_scene.wgsl.
 const HOOKS: [&str; 5] = ["shade_reflect", "shade_reference", "shade_rect", "shade_environment", "shade_lod"];
-
-/// The environment of programs that are checked without one.
-const NO_ENVIRONMENT: &str = "fn shade_environment(point: ViewPoint) -> vec3f { return vec3f(0.0); }";
 
 /// Panics with what is wrong and where.
 fn check(what: &str, source: &str) {
     let module =
         naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(source)));
-    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::CUBE_ARRAY_TEXTURES);
     validator.validate(&module).unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(source)));
 }
 
 #[test]
 fn programs_of_the_viewer_are_valid() {
-    for files in [
-        &["view_surface", "shade_smooth", "shade_rect_points"][..],
-        &["view_surface", "shade_dictionary", "shade_rect_points"],
-        &["view_surface", "shade_area_light"],
-        &["view_surface", "shade_plain_ltc"],
-    ] {
-        let source = compose(files) + "\n" + NO_ENVIRONMENT;
+    for (name, _) in SHADING {
+        let source = program(name);
         for hook in HOOKS {
-            assert_eq!(source.matches(&format!("\nfn {hook}(")).count(), 1, "{files:?}: {hook}");
+            assert_eq!(source.matches(&format!("\nfn {hook}(")).count(), 1, "{name}: {hook}");
         }
-        check(&files.join(" "), &source);
+        check(name, &source);
     }
+    for (name, _) in PASSES {
+        check(name, &program(name));
+    }
+}
+
+#[test]
+fn programs_that_answer_queries_are_valid() {
+    let queries = MODULES.iter().filter_map(|module| module.name.strip_prefix("query_"));
+    for method in queries {
+        let files = glint_shaders::query_files(method);
+        check(method, &compose(&files));
+    }
+    check("environment, texel by texel", &compose(&["query_environment", "bind_environment_exact"]));
 }

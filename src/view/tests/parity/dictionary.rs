@@ -1,6 +1,6 @@
 //! Slope distributions of the dictionary.
 
-use crate::support::{QUERIES, compare, gpu, random};
+use crate::support::{QUERIES, compare, gpu, log_uniform, random};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
 use glint_bake_core::dictionary::eval::{GlintMaterial, PixelOnSurface, patch_sdf};
@@ -28,11 +28,6 @@ struct Query {
     /// WGSL aligns the colour to 16 bytes.
     unused: [u32; 3],
     mean_colour: [f32; 4],
-}
-
-/// A number whose logarithm is uniform.
-fn log_uniform(rng: &mut impl Rng, low: f32, high: f32) -> f32 {
-    low * (high / low).powf(rng.random::<f32>())
 }
 
 fn direction(rng: &mut impl Rng) -> Vec2 {

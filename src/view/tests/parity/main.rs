@@ -4,5 +4,7 @@
 
 mod adapter;
 mod area_light;
+mod counting;
 mod dictionary;
+mod environment;
 mod support;

@@ -1,7 +1,7 @@
 //! The adapter, random queries, and the comparison of answers.
 
 pub use crate::adapter::gpu;
-use rand::SeedableRng;
+use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 /// Queries a method, at least.
@@ -10,6 +10,11 @@ pub const QUERIES: usize = 10_000;
 /// Random numbers of a test.
 pub fn random(seed: u64) -> Pcg64 {
     Pcg64::seed_from_u64(seed)
+}
+
+/// A number whose logarithm is uniform.
+pub fn log_uniform(rng: &mut impl Rng, low: f32, high: f32) -> f32 {
+    low * (high / low).powf(rng.random::<f32>())
 }
 
 /// Whether two numbers agree: 1e-3 of the larger, and 1e-5 where both are small.

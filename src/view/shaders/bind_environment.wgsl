@@ -1,0 +1,29 @@
+// Bindings of an environment for glint_environment.wgsl: group 2, read by a sampler.
+
+@group(2) @binding(0) var<uniform> environment: GlintEnvironment;
+// Section ENRA: RGBA16Float or RGBA32Float, all mips.
+@group(2) @binding(1) var environment_radiance: texture_cube<f32>;
+// Section ENIN: RGBA16Float, RGBA32Float or RGBA16Unorm, four levels a layer; one black texel if there is one level.
+@group(2) @binding(2) var environment_indicators: texture_cube_array<f32>;
+// Section ENCO: RGB9E5Ufloat, a level a layer; one black texel without colours.
+@group(2) @binding(3) var environment_colours: texture_cube_array<f32>;
+// Section ENAL: RGBA16Float.
+@group(2) @binding(4) var environment_albedo: texture_2d<f32>;
+// Filters between texels and mips, clamps.
+@group(2) @binding(5) var environment_sampler: sampler;
+
+fn glint_environment_radiance_at(direction: vec3f, mip: f32) -> vec4f {
+    return textureSampleLevel(environment_radiance, environment_sampler, direction, mip) * environment.radiance_scale;
+}
+
+fn glint_environment_indicators_at(layer: u32, direction: vec3f, mip: f32) -> vec4f {
+    return textureSampleLevel(environment_indicators, environment_sampler, direction, layer, mip);
+}
+
+fn glint_environment_colour_at(layer: u32, direction: vec3f, mip: f32) -> vec3f {
+    return textureSampleLevel(environment_colours, environment_sampler, direction, layer, mip).rgb;
+}
+
+fn glint_environment_albedo_at(place: vec2f) -> vec4f {
+    return textureSampleLevel(environment_albedo, environment_sampler, place, 0.0);
+}

@@ -1,0 +1,400 @@
+//! Glints under an environment, and the random words of a surface's cells.
+//!
+//! Look-ups are compared texel by texel (`bind_environment_exact.wgsl`); how far a sampler is from that is a test of its own.
+//! Draws flip between neighbouring counts where the random word lies at a step, as `counting.rs` says.
+
+use crate::counting::{MAX_FLIPPED, beside};
+use crate::support::{QUERIES, agree, compare, gpu, log_uniform, random};
+use bytemuck::{Pod, Zeroable};
+use glam::{Vec2, Vec3};
+use glint_bake_core::counting::multinomial::tree_leaves;
+use glint_bake_core::environment::cells::{
+    footprint_area, footprint_facets, surface_cells, surface_lod, surface_words,
+};
+use glint_bake_core::environment::glints::{GlintSurface, environment_glints, glint_chances};
+use glint_bake_core::environment::image::direction as direction_at;
+use glint_bake_core::environment::options::LevelCount;
+use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, bake};
+use glint_bake_core::progress::Silent;
+use glint_formats::environment::{MAX_LEVELS, Storage};
+use glint_view::gpu::{Gpu, ResourceSet, answer};
+use glint_view::methods::environment::{LookUp, empty, upload_as, upload_for};
+use rand::{Rng, RngExt};
+use std::f64::consts::PI;
+
+/// `EnvironmentQuery` of query_environment.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Query {
+    normal: Vec3,
+    alpha: f32,
+    view: Vec3,
+    f0: f32,
+    density: f32,
+    seed: u32,
+    position: Vec2,
+    d_dx: Vec2,
+    d_dy: Vec2,
+    words: [u32; MAX_LEVELS],
+    own_words: u32,
+    facets: f32,
+    unused: [u32; 2],
+}
+
+/// `EnvironmentAnswer`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Answer {
+    smooth: [f32; 3],
+    spread: f32,
+    glints: [f32; 3],
+    facets: f32,
+    moments: [f32; 2],
+    lod: f32,
+    unused: u32,
+    p: [f32; MAX_LEVELS],
+    words: [u32; MAX_LEVELS],
+}
+
+impl Query {
+    fn surface(&self, facets: f32) -> GlintSurface {
+        GlintSurface { normal: self.normal, view: self.view, alpha: self.alpha, f0: self.f0, facets }
+    }
+}
+
+/// A sky with a gradient and lamps in it, `bright` times as bright.
+fn image(bright: f32) -> EnvironmentImage {
+    const HEIGHT: u32 = 32;
+    let mut pixels = Vec::new();
+    for y in 0..HEIGHT {
+        for x in 0..2 * HEIGHT {
+            let longitude = PI * ((f64::from(x) + 0.5) / f64::from(HEIGHT) - 1.0);
+            let d = direction_at(longitude, (PI * (0.5 - (f64::from(y) + 0.5) / f64::from(HEIGHT))).sin());
+            let lit = (9.0 * d.x).sin() * (7.0 * d.z).cos() > 0.85;
+            let sky = [0.3 + 0.2 * d.y as f32, 0.3 + 0.1 * d.x as f32, 0.4];
+            pixels.push(if lit { [bright, 0.8 * bright, 0.4 * bright] } else { sky });
+        }
+    }
+    EnvironmentImage::new(2 * HEIGHT, HEIGHT, pixels).unwrap().0
+}
+
+fn baked(image: &EnvironmentImage, face_size: u32, levels: u32, storage: Storage, coloured: bool) -> Environment {
+    baked_to(1, image, face_size, levels, storage, coloured)
+}
+
+fn baked_to(
+    min_face_size: u32,
+    image: &EnvironmentImage,
+    face_size: u32,
+    levels: u32,
+    storage: Storage,
+    coloured: bool,
+) -> Environment {
+    let options = EnvironmentOptions {
+        face_size,
+        min_face_size,
+        levels: LevelCount::Exactly(levels),
+        coloured,
+        storage,
+        measured_texels: 0,
+        max_error: 0.02,
+        ..EnvironmentOptions::default()
+    };
+    bake(image, 0, &options, &Silent).unwrap()
+}
+
+fn sphere(rng: &mut impl Rng) -> Vec3 {
+    direction_at(2.0 * PI * rng.random::<f64>(), 2.0 * rng.random::<f64>() - 1.0).as_vec3()
+}
+
+/// All angles, roughnesses and numbers of facets; footprints of 0.05 to 500 thousandths of a unit, up to 50 times as long as wide.
+fn query(rng: &mut impl Rng) -> Query {
+    let normal = sphere(rng);
+    let (across, cosine) = (normal.cross(sphere(rng)).normalize(), rng.random::<f32>());
+    let size = log_uniform(rng, 0.05, 500.0) * 1e-3;
+    let along = Vec2::from_angle(rng.random::<f32>() * std::f32::consts::TAU);
+    let facets = log_uniform(rng, 0.01, 1e9);
+    Query {
+        normal,
+        alpha: rng.random::<f32>().powi(2),
+        view: normal * cosine + across * (1.0 - cosine * cosine).sqrt(),
+        f0: rng.random(),
+        density: facets / (size * size),
+        seed: rng.random(),
+        position: Vec2::from_angle(rng.random::<f32>() * std::f32::consts::TAU) * log_uniform(rng, 1e-3, 30.0),
+        d_dx: along * size,
+        d_dy: along.perp() * size * log_uniform(rng, 0.02, 1.0) + along * size * (rng.random::<f32>() - 0.5),
+        words: std::array::from_fn(|_| rng.random()),
+        own_words: u32::from(rng.random::<bool>()),
+        facets,
+        unused: [0; 2],
+    }
+}
+
+fn ask(gpu: &Gpu, environment: &Environment, look_up: LookUp, queries: &[Query]) -> Vec<Answer> {
+    let bind = if look_up == LookUp::Exact { "bind_environment_exact" } else { "bind_environment" };
+    let source = glint_shaders::compose(&["query_environment", bind]);
+    let data = upload_for(gpu, environment, look_up);
+    assert!(look_up == LookUp::Sampler || data.notes.is_empty() || environment.params.storage == Storage::Unorm16);
+    answer(gpu, "environment", &source, &[&ResourceSet::default().finish(gpu), &data], queries).unwrap()
+}
+
+/// What is compared of one answer.
+#[derive(Default)]
+struct Pairs {
+    smooth: Vec<(f32, f32)>,
+    p: Vec<(f32, f32)>,
+    variance: Vec<(f32, f32)>,
+    glints: Vec<(f32, f32)>,
+    words: Vec<(f32, f32)>,
+    small_words: Vec<(f32, f32)>,
+    flipped: usize,
+}
+
+/// Twin's radiance for these words and, where the shader's is another, for words beside them.
+fn glints_beside(
+    environment: &Environment,
+    surface: &GlintSurface,
+    words: &[u32; MAX_LEVELS],
+    found: [f32; 3],
+) -> bool {
+    let leaves = tree_leaves(environment.params.levels.len().max(2));
+    (0..leaves).any(|node| {
+        beside(words[node])[1..].iter().any(|word| {
+            let mut words = *words;
+            words[node] = *word;
+            let expected = environment_glints(environment, surface, &words);
+            (0..3).all(|c| agree(found[c], expected[c]))
+        })
+    })
+}
+
+fn hold(environment: &Environment, queries: &[Query], answers: &[Answer], pairs: &mut Pairs) {
+    let levels = environment.params.levels.len();
+    let leaves = tree_leaves(levels.max(2));
+    for (query, answer) in queries.iter().zip(answers) {
+        let area = footprint_area(query.d_dx, query.d_dy);
+        let lod = surface_lod(area);
+        let facets = if query.own_words != 0 { footprint_facets(area, query.density) } else { query.facets };
+        let surface = query.surface(facets);
+        let chances = glint_chances(environment, &surface);
+        pairs.smooth.extend(answer.smooth.into_iter().zip(chances.smooth));
+        pairs.p.extend(answer.p[..levels].iter().copied().zip(chances.p));
+        let variance = |spread: f32, [mean, square]: [f32; 2]| spread * spread * (square / (mean * mean) - 1.0);
+        pairs.variance.push((variance(answer.spread, answer.moments), variance(chances.spread, chances.moments)));
+        if query.own_words != 0 {
+            let words = surface_words(&surface_cells(query.position, lod, query.seed), leaves);
+            for i in 0..leaves {
+                let small = |word: u32| if i == 0 { word } else { !word } as f32 / 4_294_967_296.0;
+                pairs.words.push((small(answer.words[i]), small(words[i])));
+                // Rare ones by their size: a word is as rare as it is small.
+                pairs.small_words.push((small(answer.words[i]).max(1e-8).log10(), small(words[i]).max(1e-8).log10()));
+            }
+            assert!(agree(answer.facets, facets) && agree(answer.lod, lod), "{query:?} {answer:?}");
+        }
+        // With the shader's own words, so that differences do not pile up.
+        let surface = query.surface(answer.facets);
+        let expected = environment_glints(environment, &surface, &answer.words);
+        let same = (0..3).all(|c| agree(answer.glints[c], expected[c]));
+        if same {
+            pairs.glints.extend(answer.glints.into_iter().zip(expected));
+        } else {
+            pairs.flipped += 1;
+            let other = glints_beside(environment, &surface, &answer.words, answer.glints);
+            assert!(other, "{levels} levels, {query:?}: {:?}, expected {expected:?}", answer.glints);
+        }
+    }
+}
+
+fn finish(what: &str, pairs: Pairs, queries: usize) {
+    println!("{what}: {} of {queries} draws on the other side of a step", pairs.flipped);
+    assert!(pairs.flipped as f64 <= MAX_FLIPPED * queries as f64, "{} flipped", pairs.flipped);
+    compare(&format!("{what}, smooth"), pairs.smooth.into_iter());
+    compare(&format!("{what}, probabilities"), pairs.p.into_iter());
+    compare(&format!("{what}, relative variance of a facet"), pairs.variance.into_iter());
+    compare(&format!("{what}, glints"), pairs.glints.into_iter());
+    compare(&format!("{what}, words"), pairs.words.into_iter());
+    compare(&format!("{what}, size of words"), pairs.small_words.into_iter());
+}
+
+#[test]
+fn glints_of_the_shader_are_those_of_the_cpu() {
+    let Some(gpu) = gpu() else { return };
+    let rng = &mut random(31);
+    let mut pairs = Pairs::default();
+    let mut count = 0;
+    for (levels, storage, coloured, face_size) in [
+        (1, Storage::F16, false, 16),
+        (2, Storage::F32, true, 8),
+        (3, Storage::Unorm16, false, 16),
+        (4, Storage::F16, false, 32),
+        (5, Storage::Unorm16, true, 8),
+        (8, Storage::F32, false, 16),
+        (11, Storage::F16, true, 8),
+        (16, Storage::F16, false, 16),
+    ] {
+        let environment = baked(&image(30.0), face_size, levels, storage, coloured);
+        let queries: Vec<Query> = (0..QUERIES / 4).map(|_| query(rng)).collect();
+        hold(&environment, &queries, &ask(gpu, &environment, LookUp::Exact, &queries), &mut pairs);
+        count += queries.len();
+    }
+    finish("environment", pairs, count);
+}
+
+#[test]
+fn a_real_environment_agrees_too() {
+    let Some(gpu) = gpu() else { return };
+    let data = std::env::var_os("GLINT_DATA").map_or("../../../shared/data".into(), std::path::PathBuf::from);
+    let path = data.join("hdri/dancing_hall_1k.hdr");
+    let Ok(pixels) = image::open(&path) else {
+        eprintln!("skipped: no {}; set GLINT_DATA", path.display());
+        return;
+    };
+    let pixels = pixels.into_rgb32f();
+    let (width, height) = pixels.dimensions();
+    let image = EnvironmentImage::new(width, height, pixels.pixels().map(|pixel| pixel.0).collect()).unwrap().0;
+    let environment = baked(&image, 32, 8, Storage::F16, false);
+    let rng = &mut random(32);
+    let queries: Vec<Query> = (0..QUERIES).map(|_| query(rng)).collect();
+    let mut pairs = Pairs::default();
+    hold(&environment, &queries, &ask(gpu, &environment, LookUp::Exact, &queries), &mut pairs);
+    finish("dancing hall", pairs, queries.len());
+}
+
+/// A sampler filters with weights of 8 bits or more, off by up to 1/512 of the difference of two texels in each of three
+/// directions, and has its own rule at the corners of a cube. Faces are 64 to 8 texels, as a bake has them by default.
+#[test]
+fn a_sampler_reads_what_is_read_texel_by_texel() {
+    let Some(gpu) = gpu() else { return };
+    for storage in [Storage::F16, Storage::F32, Storage::Unorm16] {
+        let environment = baked_to(8, &image(30.0), 64, 8, storage, false);
+        let rng = &mut random(33);
+        let queries: Vec<Query> = (0..QUERIES).map(|_| query(rng)).collect();
+        let exact = ask(gpu, &environment, LookUp::Exact, &queries);
+        let sampled = ask(gpu, &environment, LookUp::Sampler, &queries);
+        let (mut worst, mut sum, mut shares, mut apart) = (0.0f32, 0.0, 0.0f32, 0);
+        for (exact, sampled) in exact.iter().zip(&sampled) {
+            let off = (sampled.smooth[1] - exact.smooth[1]).abs() / exact.smooth[1];
+            worst = worst.max(off);
+            sum += f64::from(off);
+            apart += usize::from(off > 1e-3);
+            shares = (0..8).map(|k| (sampled.p[k] - exact.p[k]).abs()).fold(shares, f32::max);
+        }
+        let mean = sum / queries.len() as f64;
+        println!(
+            "{storage:?}: sampler against texels: smooth light mean {mean:.1e}, worst {worst:.1e}, {apart} of {} apart by \
+             more than 1e-3; probabilities worst {shares:.1e}",
+            queries.len()
+        );
+        assert!(mean < 2e-3 && worst < 0.05 && shares < 0.02, "{mean} {worst} {shares}");
+    }
+}
+
+/// Where an adapter lacks a format, half floats take its place and the notes say so.
+#[test]
+fn formats_that_an_adapter_lacks_are_converted() {
+    let Some(gpu) = gpu() else { return };
+    let rng = &mut random(34);
+    let queries: Vec<Query> = (0..2000).map(|_| query(rng)).collect();
+    let source = glint_shaders::compose(&["query_environment", "bind_environment"]);
+    for (storage, bright, notes) in [(Storage::F16, 30.0, 0), (Storage::F32, 1e6, 2), (Storage::Unorm16, 30.0, 1)] {
+        let environment = baked(&image(bright), 8, 4, storage, false);
+        let plain = ask(gpu, &environment, LookUp::Sampler, &queries);
+        let data = upload_as(gpu, &environment, LookUp::Sampler, wgpu::Features::empty());
+        assert_eq!(data.notes.len(), notes, "{storage:?}: {:?}", data.notes);
+        let none = ResourceSet::default().finish(gpu);
+        let converted: Vec<Answer> = answer(gpu, "environment", &source, &[&none, &data], &queries).unwrap();
+        for (plain, converted) in plain.iter().zip(&converted) {
+            let off = (converted.smooth[0] / plain.smooth[0] - 1.0).abs();
+            assert!(off < 1.0 / 1000.0, "{storage:?}: {plain:?} {converted:?}");
+        }
+    }
+}
+
+/// White furnace: the mean of glints over 1024 seeds is the smooth reflection.
+#[test]
+fn the_mean_of_1024_seeds_is_the_smooth_reflection() {
+    const SEEDS: u32 = 1024;
+    let Some(gpu) = gpu() else { return };
+    for (levels, coloured) in [(1, false), (4, false), (8, false), (4, true)] {
+        let environment = baked(&image(3.0), 16, levels, Storage::F16, coloured);
+        let rng = &mut random(35);
+        // Points enough that the mean is known to a third of a per cent.
+        let lots = [(2.5, 192), (30.0, 64), (3000.0, 16)];
+        let mut queries = Vec::new();
+        for (facets, points) in lots {
+            for _ in 0..points {
+                let mut point = query(rng);
+                let edge = point.d_dx.length();
+                (point.d_dx, point.d_dy) = (Vec2::new(edge, 0.0), Vec2::new(0.0, edge));
+                point.density = facets / (edge * edge);
+                point.own_words = 1;
+                for seed in 0..SEEDS {
+                    point.seed = seed;
+                    queries.push(point);
+                }
+            }
+        }
+        let answers = ask(gpu, &environment, LookUp::Sampler, &queries);
+        let mut rest = answers.as_slice();
+        for (facets, points) in lots {
+            let (lot, after) = rest.split_at(points * SEEDS as usize);
+            rest = after;
+            // Each point counts the same, bright or not.
+            let ratios = lot.iter().map(|a| f64::from(a.glints[1] / a.smooth[1]));
+            let count = lot.len() as f64;
+            let (sum, square) = ratios.fold((0.0, 0.0), |(sum, square), r| (sum + r, square + r * r));
+            let mean = sum / count;
+            let noise = ((square / count - mean * mean) / count).sqrt();
+            println!(
+                "{levels} levels, coloured {coloured}, {facets} facets: {mean:.4} of smooth, standard error {noise:.4}"
+            );
+            assert!(noise < 1.0 / 300.0, "{noise}: too few points to tell");
+            assert!((mean - 1.0).abs() < 0.01, "{levels} levels, {facets} facets: {mean} of the smooth reflection");
+        }
+    }
+}
+
+#[test]
+fn hard_cases_stay_finite() {
+    let Some(gpu) = gpu() else { return };
+    let rng = &mut random(36);
+    let mut queries = Vec::new();
+    for k in 0..4096 {
+        let mut hard = query(rng);
+        hard.own_words = 1;
+        match k % 10 {
+            0 => hard.d_dx = Vec2::ZERO,
+            1 => hard.d_dy = hard.d_dx,
+            2 => hard.density = 0.0,
+            3 => hard.density = 1e30,
+            4 => hard.view = hard.normal,
+            5 => hard.view = hard.normal.any_orthonormal_vector(),
+            6 => hard.alpha = [0.0, 1.0, 1e-6][k % 3],
+            7 => hard.position = Vec2::splat(1e30),
+            8 => hard.normal = Vec3::Y,
+            _ => (hard.d_dx, hard.d_dy) = (hard.d_dx * 1e20, hard.d_dy * 1e20),
+        }
+        if hard.view.dot(hard.normal) < 0.0 {
+            hard.view = -hard.view;
+        }
+        queries.push(hard);
+    }
+    let black = EnvironmentImage::new(8, 4, vec![[0.0; 3]; 32]).unwrap().0;
+    let sun = {
+        let mut pixels = vec![[0.1; 3]; 32 * 64];
+        pixels[700] = [1e6; 3];
+        EnvironmentImage::new(64, 32, pixels).unwrap().0
+    };
+    for (image, levels) in [(&black, 1), (&black, 4), (&image(30.0), 16), (&sun, 4)] {
+        let environment = baked(image, 8, levels, Storage::F16, false);
+        for answer in ask(gpu, &environment, LookUp::Sampler, &queries) {
+            let finite = answer.glints.iter().chain(&answer.smooth).all(|v| v.is_finite() && *v >= 0.0);
+            assert!(finite, "{levels} levels: {answer:?}");
+        }
+    }
+    let source = glint_shaders::compose(&["query_environment", "bind_environment"]);
+    let none = ResourceSet::default().finish(gpu);
+    let answers: Vec<Answer> = answer(gpu, "environment", &source, &[&none, &empty(gpu)], &queries).unwrap();
+    assert!(answers.iter().all(|answer| answer.glints == [0.0; 3]), "no environment, no light");
+}
