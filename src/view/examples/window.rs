@@ -34,7 +34,13 @@ fn main() -> ExitCode {
         meshes: vec![("sphere".to_owned(), Mesh::sphere(64)), ("plane".to_owned(), Mesh::plane(2.0))],
         load: Box::new(move |gpu| {
             let material = Material { density: 2.0e5, ..Material::default() };
-            let shown = |method, data| Shown { name: String::new(), method, data: Rc::new(data), material };
+            let shown = |method, data| Shown {
+                name: String::new(),
+                method,
+                data: Rc::new(data),
+                material,
+                constants: Vec::new(),
+            };
             let list = vec![
                 shown(Method::Smooth, ResourceSet::default().finish(gpu)),
                 shown(Method::Dictionary, methods::dictionary::upload(gpu, &baked, &[])),

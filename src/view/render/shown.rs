@@ -43,36 +43,20 @@ struct Facts {
 impl Method {
     fn facts(self) -> Facts {
         match self {
-            Method::Smooth => Facts {
-                name: "smooth",
-                light: LightKind::Sun,
-                baseline: None,
-                has_map: false,
-            },
-            Method::Dictionary => Facts {
-                name: "dictionary",
-                light: LightKind::Sun,
-                baseline: Some(Method::Smooth),
-                has_map: false,
-            },
+            Method::Smooth => Facts { name: "smooth", light: LightKind::Sun, baseline: None, has_map: false },
+            Method::Dictionary => {
+                Facts { name: "dictionary", light: LightKind::Sun, baseline: Some(Method::Smooth), has_map: false }
+            }
             Method::Environment => Facts {
                 name: "environment",
                 light: LightKind::Environment,
                 baseline: Some(Method::Smooth),
                 has_map: false,
             },
-            Method::AreaLight => Facts {
-                name: "area-light",
-                light: LightKind::Rect,
-                baseline: Some(Method::PlainLtc),
-                has_map: true,
-            },
-            Method::PlainLtc => Facts {
-                name: "plain-ltc",
-                light: LightKind::Rect,
-                baseline: None,
-                has_map: true,
-            },
+            Method::AreaLight => {
+                Facts { name: "area-light", light: LightKind::Rect, baseline: Some(Method::PlainLtc), has_map: true }
+            }
+            Method::PlainLtc => Facts { name: "plain-ltc", light: LightKind::Rect, baseline: None, has_map: true },
         }
     }
 

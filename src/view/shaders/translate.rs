@@ -64,6 +64,9 @@ pub struct TranslateError {
     pub reason: String,
 }
 
+/// What the library uses beyond the least that naga knows; every WebGPU adapter has both.
+pub const CAPABILITIES: Capabilities = Capabilities::CUBE_ARRAY_TEXTURES.union(Capabilities::SHADER_FLOAT16_IN_FLOAT32);
+
 const QUERY: &str = "query_";
 
 /// Names of the methods: one for every `query_<method>.wgsl`.
@@ -113,7 +116,7 @@ fn translate(language: Language, program: &'static Module) -> Result<Vec<u8>, Tr
     let fail = |reason: String| TranslateError { program: program.name, language, reason };
     let source = crate::compose(&crate::query_files(program.name.trim_start_matches(QUERY)));
     let module = naga::front::wgsl::parse_str(&source).map_err(|e| fail(e.emit_to_string(&source)))?;
-    let info = Validator::new(ValidationFlags::all(), Capabilities::CUBE_ARRAY_TEXTURES)
+    let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
         .validate(&module)
         .map_err(|e| fail(e.emit_to_string(&source)))?;
     let text = match language {

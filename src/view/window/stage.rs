@@ -167,7 +167,13 @@ mod tests {
     fn smooth() -> Load {
         Box::new(|gpu| {
             let data = Rc::new(ResourceSet::default().finish(gpu));
-            let shown = Shown { name: String::new(), method: Method::Smooth, data, material: Material::default() };
+            let shown = Shown {
+                name: String::new(),
+                method: Method::Smooth,
+                data,
+                material: Material::default(),
+                constants: Vec::new(),
+            };
             Ok(Loaded { list: vec![shown], environment: None })
         })
     }

@@ -1,7 +1,8 @@
 //! Every program of the viewer and of the tests is sound WGSL, whatever adapter there is.
 
+use glint_shaders::translate::CAPABILITIES;
 use glint_shaders::{MODULES, PASSES, SHADING, compose, program};
-use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::valid::{ValidationFlags, Validator};
 
 /// Hooks that a shading program must have once, see view_scene.wgsl.
 const HOOKS: [&str; 5] = ["shade_reflect", "shade_reference", "shade_rect", "shade_environment", "shade_lod"];
@@ -10,7 +11,7 @@ const HOOKS: [&str; 5] = ["shade_reflect", "shade_reference", "shade_rect", "sha
 fn check(what: &str, source: &str) {
     let module =
         naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(source)));
-    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::CUBE_ARRAY_TEXTURES);
+    let mut validator = Validator::new(ValidationFlags::all(), CAPABILITIES);
     validator.validate(&module).unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(source)));
 }
 
