@@ -34,6 +34,7 @@ macro_rules! modules {
 modules! {
     "glint_brdf" needs [];
     "glint_hash" needs [];
+    "glint_footprint" needs [];
     "glint_dictionary" needs ["glint_hash"];
     "bind_dictionary" needs ["glint_dictionary"];
     "query_dictionary" needs ["bind_dictionary"];
