@@ -38,10 +38,15 @@ modules! {
     "glint_dictionary" needs ["glint_hash"];
     "bind_dictionary" needs ["glint_dictionary"];
     "query_dictionary" needs ["bind_dictionary"];
+    "glint_ndf_ellipse" needs ["glint_footprint"];
+    "glint_ndf_maps" needs ["glint_ndf_ellipse"];
+    "bind_ndf_maps" needs ["glint_ndf_maps"];
+    "query_ndf_maps" needs ["bind_ndf_maps"];
     "view_scene" needs [];
     "view_surface" needs ["view_scene", "glint_hash"];
     "shade_smooth" needs ["view_scene", "glint_brdf"];
     "shade_dictionary" needs ["view_scene", "glint_brdf", "bind_dictionary"];
+    "shade_ndf_maps" needs ["view_scene", "glint_brdf", "bind_ndf_maps"];
     "shade_rect_points" needs ["view_scene"];
 }
 

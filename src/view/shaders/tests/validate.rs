@@ -1,0 +1,31 @@
+//! Programs are valid WGSL, whole: every hook of the viewer is there once.
+
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+/// Programs as the viewer and the tests compose them.
+const PROGRAMS: &[&[&str]] = &[
+    &["query_dictionary"],
+    &["query_ndf_maps"],
+    &["view_surface", "shade_smooth", "shade_rect_points"],
+    &["view_surface", "shade_dictionary", "shade_rect_points"],
+    &["view_surface", "shade_ndf_maps", "shade_rect_points"],
+];
+
+/// The environment of programs that are checked without one.
+const NO_ENVIRONMENT: &str = "fn shade_environment(point: ViewPoint) -> vec3f { return vec3f(0.0); }";
+
+#[test]
+fn programs_are_valid() {
+    for program in PROGRAMS {
+        let mut source = glint_shaders::compose(program);
+        if program.contains(&"view_surface") {
+            source += NO_ENVIRONMENT;
+        }
+        let module = naga::front::wgsl::parse_str(&source)
+            .unwrap_or_else(|error| panic!("{program:?}: {}", error.emit_to_string(&source)));
+        // unpack2x16float is WebGPU's baseline; naga asks for it by name.
+        Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT16_IN_FLOAT32)
+            .validate(&module)
+            .unwrap_or_else(|error| panic!("{program:?}: {}", error.emit_to_string(&source)));
+    }
+}
