@@ -34,12 +34,18 @@ fn glint_footprint_of_pixel(mean: vec2f, d_dx: vec2f, d_dy: vec2f, pixel_sigma: 
     );
 }
 
-// The leading 12 bits of a number; what is left has 12 too, so that products of such parts are exact.
+// The leading 11 bits of a number. A product of two such parts is exact; what is left has 13.
 fn glint_upper_half(x: f32) -> f32 {
-    return bitcast<f32>(bitcast<u32>(x) & 0xfffff000u);
+    return bitcast<f32>(bitcast<u32>(x) & 0xffffe000u);
 }
 
-// a c - b^2 with the digits that cancel: each product is of halves and exact, whether or not it is fused with a sum.
+// A number but for its last bit. Compilers take sums and products apart for speed, which costs the digits that are kept by
+// halves; they cannot look through integers.
+fn glint_keep(x: f32) -> f32 {
+    return bitcast<f32>(bitcast<u32>(x) & 0xfffffffeu);
+}
+
+// a c - b^2 with the digits that cancel, by exact products of halves.
 fn glint_determinant(a: f32, b: f32, c: f32) -> f32 {
     let ah = glint_upper_half(a);
     let bh = glint_upper_half(b);
@@ -47,7 +53,9 @@ fn glint_determinant(a: f32, b: f32, c: f32) -> f32 {
     let al = a - ah;
     let bl = b - bh;
     let cl = c - ch;
-    return ((ah * ch - bh * bh) + (ah * cl + al * ch - 2.0 * (bh * bl))) + (al * cl - bl * bl);
+    let halves = glint_keep(glint_keep(ah * ch) - glint_keep(bh * bh));
+    let cross = glint_keep(glint_keep(ah * cl) - glint_keep(bh * bl)) + glint_keep(glint_keep(al * ch) - glint_keep(bh * bl));
+    return glint_keep(halves + glint_keep(cross)) + glint_keep(al * cl - bl * bl);
 }
 
 // Unit vector at half the angle of `v`, with x >= 0; (1, 0) for a zero vector.
@@ -62,7 +70,7 @@ fn glint_half_angle(v: vec2f) -> vec2f {
     return vec2f(1.0, 0.0);
 }
 
-// Principal axes. The minor one follows from the determinant: five digits at an anisotropy of 1000, where the difference of
+// Principal axes. The minor one follows from the determinant: four digits at an anisotropy of 1000, where the difference of
 // eigenvalues would have one.
 fn glint_principal(footprint: GlintFootprint) -> GlintPrincipal {
     // A power of two brings the numbers to order 1 without rounding.

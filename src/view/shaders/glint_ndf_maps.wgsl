@@ -152,6 +152,16 @@ fn glint_ndf_texels(material: GlintNdfMaterial, at: i32) -> vec3f {
     );
 }
 
+// Weighted sum of those of the three density texels from `at` on that lie inside the tile.
+fn glint_ndf_row(material: GlintNdfMaterial, at: i32, weights: vec3f, inside: vec3<bool>) -> f32 {
+    if !any(inside) {
+        return 0.0;
+    }
+    // What lies beyond the tile may be no number.
+    let v = select(vec3f(0.0), glint_ndf_texels(material, at), inside);
+    return weights.x * v.x + weights.y * v.y + weights.z * v.z;
+}
+
 // Density of one tile at the example's projected normal `s`: quadratic splines over decoded texels (bilinear for the paper's
 // storage), 0 outside the box.
 fn glint_ndf_tile_density(material: GlintNdfMaterial, tile: u32, s: vec2f) -> f32 {
@@ -177,17 +187,12 @@ fn glint_ndf_tile_density(material: GlintNdfMaterial, tile: u32, s: vec2f) -> f3
     }
     let columns = first.x + vec3i(0, 1, 2);
     let inside = columns >= vec3i(0) & columns < vec3i(size.x);
-    let weights = select(vec3f(0.0), across, inside);
-    var sum = 0.0;
-    for (var b = 0; b < 3; b++) {
-        let row = first.y + b;
-        if row >= 0 && row < size.y {
-            // What lies beyond the row may be no number.
-            let v = select(vec3f(0.0), glint_ndf_texels(material, i32(texels.y) + row * size.x + first.x), inside);
-            sum += select(select(down.z, down.y, b == 1), down.x, b == 0)
-                * (weights.x * v.x + weights.y * v.y + weights.z * v.z);
-        }
-    }
+    let start = i32(texels.y) + first.y * size.x + first.x;
+    let sum = down.x * glint_ndf_row(material, start, across, inside & vec3<bool>(first.y >= 0 && first.y < size.y))
+        + down.y
+            * glint_ndf_row(material, start + size.x, across, inside & vec3<bool>(first.y >= -1 && first.y + 1 < size.y))
+        + down.z
+            * glint_ndf_row(material, start + 2 * size.x, across, inside & vec3<bool>(first.y >= -2 && first.y + 2 < size.y));
     return bitcast<f32>(texels.x) * sum;
 }
 
@@ -274,10 +279,10 @@ fn glint_ndf_inside_disk(s: vec2f, long: vec2f, short: vec2f, sigma: f32) -> f32
         return 1.0;
     }
     let piece = long * 0.25;
-    var sum = 0.0;
-    for (var k = 0; k < 4; k++) {
-        sum += glint_ndf_inside_rim(s + piece * (f32(k) - 1.5), piece, short, sigma);
-    }
+    let sum = glint_ndf_inside_rim(s - 1.5 * piece, piece, short, sigma)
+        + glint_ndf_inside_rim(s - 0.5 * piece, piece, short, sigma)
+        + glint_ndf_inside_rim(s + 0.5 * piece, piece, short, sigma)
+        + glint_ndf_inside_rim(s + 1.5 * piece, piece, short, sigma);
     return max(sum * 0.25, 1.0e-3);
 }
 
@@ -433,11 +438,10 @@ fn glint_ndf_visible_tile(
             at *= 2u;
         } else {
             // Up to where a child is left.
-            for (var up = 0u; up < GLINT_NDF_MAX_SPLITS && depth > 0u && (at.x & at.y & 1u) == 1u; up++) {
-                at /= 2u;
-                level += 1u;
-                depth -= 1u;
-            }
+            let up = min(countTrailingZeros(~(at.x & at.y)), depth);
+            at = at >> vec2u(up);
+            level += up;
+            depth -= up;
             if depth == 0u {
                 break;
             }
@@ -565,9 +569,24 @@ fn glint_ndf_top_tile(material: GlintNdfMaterial) -> u32 {
 fn glint_ndf_product_within(m: f32, x: f32, period: f32) -> f32 {
     let mh = glint_upper_half(m);
     let xh = glint_upper_half(x);
-    let parts = vec4f(mh * xh, mh * (x - xh), (m - mh) * xh, (m - mh) * (x - xh));
-    let rest = parts - round(parts / period) * period;
-    return rest.x + ((rest.y + rest.z) + rest.w);
+    return (glint_ndf_rest_of(mh * xh, period) + glint_ndf_rest_of(mh * (x - xh), period))
+        + (glint_ndf_rest_of((m - mh) * xh, period) + glint_ndf_rest_of((m - mh) * (x - xh), period));
+}
+
+// x modulo `period`, nearest to 0.
+fn glint_ndf_rest_of(x: f32, period: f32) -> f32 {
+    let exact = glint_keep(x);
+    return glint_keep(exact - glint_keep(round(exact / period) * period));
+}
+
+// The point of a tiled example that lies at a surface position, within the example.
+fn glint_ndf_tiled_place(material: GlintNdfMaterial, position: vec4f, place: vec2f) -> vec2f {
+    let size = vec2f(material.size);
+    let local = vec2f(
+        glint_ndf_product_within(position.x, place.x, size.x) + glint_ndf_product_within(position.y, place.y, size.x),
+        glint_ndf_product_within(position.z, place.x, size.y) + glint_ndf_product_within(position.w, place.y, size.y),
+    );
+    return local - floor(local / size) * size;
 }
 
 fn glint_ndf_tiled(
@@ -579,13 +598,7 @@ fn glint_ndf_tiled(
     let position = bitcast<vec4f>(glint_ndf_record(material.palette_records));
     let normal = bitcast<vec4f>(glint_ndf_record(material.palette_records + 1u));
     let size = vec2f(material.size);
-    let mean = vec2f(
-        glint_ndf_product_within(position.x, footprint.mean.x, size.x)
-            + glint_ndf_product_within(position.y, footprint.mean.y, size.x),
-        glint_ndf_product_within(position.z, footprint.mean.x, size.y)
-            + glint_ndf_product_within(position.w, footprint.mean.y, size.y),
-    );
-    let within = mean - floor(mean / size) * size;
+    let within = glint_ndf_tiled_place(material, position, footprint.mean);
     let ellipse = glint_ndf_transformed(glint_ndf_ellipse(footprint), position, within);
     let jacobian = abs(glint_ndf_determinant(normal));
     var whole = ellipse.minor >= GLINT_NDF_TOP_TILE_SIGMA * max(size.x, size.y);
@@ -621,7 +634,8 @@ fn glint_ndf_rest(x: f32, k: f32, edge: f32) -> f32 {
     let eh = glint_upper_half(edge);
     let kl = k - kh;
     let el = edge - eh;
-    return (((x - kh * eh) - kl * eh) - kh * el) - kl * el;
+    let halves = glint_keep(glint_keep(x - glint_keep(kh * eh)) - glint_keep(kl * eh));
+    return glint_keep(glint_keep(halves - glint_keep(kh * el)) - glint_keep(kl * el));
 }
 
 fn glint_ndf_cells_around(material: GlintNdfMaterial, mean: vec2f) -> GlintNdfCells {
@@ -861,7 +875,7 @@ fn glint_ndf_density_at_point(material: GlintNdfMaterial, place: vec2f, s: vec2f
     }
     if material.cells == 0u {
         let position = bitcast<vec4f>(glint_ndf_record(material.palette_records));
-        return glint_ndf_point(material, 0u, glint_ndf_apply(position, place), s).density;
+        return glint_ndf_point(material, 0u, glint_ndf_tiled_place(material, position, place), s).density;
     }
     let cells = glint_ndf_cells_around(material, place);
     let shown = glint_ndf_shown_at(material, cells, cells.mean);

@@ -213,7 +213,7 @@ fn the_density_of_the_shader_is_that_of_the_cpu() {
             densities.push((answer.density * unit, cpu * unit));
             if answer.reached == 0.0 {
                 unreached += 1;
-                assert!(cpu * unit < 1e-5, "{cpu} is left out under {query:?} of set {k}");
+                assert!(cpu * unit < 1e-4, "{cpu} is left out under {query:?} of set {k}");
             }
         }
     }
@@ -243,4 +243,90 @@ fn one_place_is_what_the_definition_shows_there() {
         }
     }
     compare("NDF maps, one place", densities.into_iter());
+}
+
+/// Draws from a footprint's Gaussian.
+fn places(rng: &mut Pcg64, footprint: &Footprint, count: usize) -> Vec<DVec2> {
+    let (minor, major, axis) = footprint.principal();
+    let place = |_| {
+        let radius = (-2.0 * (1.0 - rng.random::<f64>()).ln()).sqrt();
+        let unit = DVec2::from_angle(rng.random::<f64>() * std::f64::consts::TAU) * radius;
+        footprint.mean + axis * (unit.x * major) + axis.perp() * (unit.y * minor)
+    };
+    (0..count).map(place).collect()
+}
+
+#[test]
+fn the_density_is_the_mean_of_its_places() {
+    const PLACES: usize = 16_384;
+    let Some(gpu) = gpu() else { return };
+    let rng = &mut random(20);
+    for pair in &samples()[..2] {
+        let layers = [&pair[0], &pair[1]];
+        for (sigma, anisotropy) in [(0.3, 2.0), (3.0, 4.0), (30.0, 1.5)] {
+            let footprint = Footprint::new(DVec2::new(77.3, -40.1), sigma, anisotropy, 0.6);
+            for layer in 0..2 {
+                let s = layers[layer].normal(rng);
+                let query = |f: &Footprint| Query::new(f, s, SETTINGS[3], layer as u32);
+                let mut queries = vec![query(&footprint)];
+                for mean in places(rng, &footprint, PLACES) {
+                    queries.push(query(&Footprint { mean, ..footprint }));
+                }
+                // Only the first one's footprint is asked for; the places need none.
+                queries[1..].iter_mut().for_each(|q| q.covariance = [0.0; 3]);
+                let answers = ask(gpu, layers, &queries);
+                let values: Vec<f64> = answers[1..].iter().map(|a| a.at_point as f64).collect();
+                let mean = values.iter().sum::<f64>() / PLACES as f64;
+                let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / PLACES as f64;
+                let noise = 4.0 * (variance / PLACES as f64).sqrt();
+                let (density, peak) = (answers[0].density as f64, layers[layer].typical_peak() as f64);
+                println!("layer {layer}, σ {sigma}: {density:.4}, mean of places {mean:.4} ± {noise:.4}");
+                assert!((density - mean).abs() < noise + 0.03 * mean + 0.01 * peak, "layer {layer}, σ {sigma}");
+            }
+        }
+    }
+}
+
+#[test]
+fn hard_maps_and_footprints_have_finite_answers() {
+    let Some(gpu) = gpu() else { return };
+    let repeat = |width: u32, height: u32, normal: fn(u32, u32) -> [f32; 2]| {
+        let projected = (0..width * height).map(|k| normal(k % width, k / width)).collect();
+        NormalMap { width, height, wrap: Wrap::Repeat, projected }
+    };
+    let maps = [
+        repeat(8, 8, |_, _| [0.1, -0.2]),
+        repeat(1, 1, |_, _| [0.0, 0.0]),
+        repeat(1, 6, |_, j| [0.0, 0.1 * j as f32 - 0.3]),
+        repeat(8, 8, |i, j| if (i + j) % 2 == 0 { [0.9, 0.0] } else { [-0.9, 0.0] }),
+        repeat(4, 4, |i, _| if i % 2 == 0 { [0.9999, 0.0] } else { [0.0, -0.9999] }),
+    ];
+    let rng = &mut random(30);
+    let mut count = 0;
+    for map in maps {
+        let maps = options(DensityStorage::SqrtU8, 0.05, 2);
+        let sample = |placement| Sample::new(map.clone(), maps.clone(), placement);
+        let pair = [sample(tiled(0.0, 1.0, 0.0)), sample(stochastic(8, 4, 1.0, 2))];
+        let mut queries = Vec::new();
+        for (sigma, anisotropy) in
+            [(0.0, 1.0), (0.01, 1.0), (1e-3, 1e6), (0.3, 8.0), (1.0, 1000.0), (3.0, 1.0), (1e4, 1.0), (1e4, 1000.0)]
+        {
+            // On a corner shared by wrap seam and patch seam, off it, and far out.
+            for mean in [DVec2::ZERO, DVec2::new(5.3, -1000.7), DVec2::new(-1e8, 1e12)] {
+                let footprint = Footprint::new(mean, sigma, anisotropy, 0.7);
+                for k in 0..40 {
+                    let near = pair[k % 2].normal(rng);
+                    let s = [near, direction(rng), Vec2::ZERO, direction(rng) * 2.0][k / 2 % 4];
+                    queries.push(Query::new(&footprint, s, SETTINGS[k / 8 % SETTINGS.len()], k as u32 % 2));
+                }
+            }
+        }
+        for (query, answer) in queries.iter().zip(ask(gpu, [&pair[0], &pair[1]], &queries)) {
+            let fine = answer.density.is_finite() && answer.density >= 0.0 && answer.at_point.is_finite();
+            assert!(fine && answer.terms < 8192.0, "{answer:?} under {query:?}");
+            count += usize::from(answer.density > 0.0);
+        }
+    }
+    println!("{count} answers are not zero");
+    assert!(count > 1000);
 }
