@@ -16,6 +16,9 @@ use glint_formats::ndf_maps::{Level, PlacementKind};
 const LOBE_TEXELS: f32 = 1.0;
 /// Sub-regions of a stochastic surface that a footprint visits at most.
 const MAX_REGIONS: f32 = 64.0;
+/// From this minor axis on (in sub-regions) the share of a sub-region follows from its middle to 2.4 %; where top tiles are
+/// enough, one tells all of it.
+const WHOLE_REGION_SIGMA: f32 = 0.5;
 /// From this minor axis on (in example edges) shares of tiled examples are even to 1.4 % and the top tile is enough.
 const TOP_TILE_SIGMA: f32 = 0.5;
 
@@ -34,7 +37,7 @@ pub struct EvalSettings {
     pub tile_sigmas: f32,
     /// Largest box that is seen as one lobe, likewise.
     pub lobe_sigmas: f32,
-    /// Tiles or lobes in the area of the footprint's ellipse, at most, but for those that sub-regions cut; a footprint that
+    /// Tiles, lobes or sub-regions in the area of the footprint's ellipse, at most, but for those that sub-regions cut; a footprint that
     /// would need more sees coarser ones.
     pub max_terms: u32,
     /// How often a tile that a sub-region shows only in part is split.
@@ -152,7 +155,7 @@ impl Material {
         let ellipse = Ellipse { mean: cells.mean, ..Ellipse::new(footprint) };
         let region = 0.5 * cells.edge;
         let regions = (2.0 * REACH).powi(2) * ellipse.major * ellipse.minor.max(region) / (region * region);
-        if ellipse.minor >= CLASS_SIGMA_CELLS * cells.edge || regions > MAX_REGIONS {
+        if ellipse.minor >= CLASS_SIGMA_CELLS * cells.edge || regions > MAX_REGIONS.min(settings.max_terms as f32) {
             return self.gather_classes(&ellipse, cells, settings, gathered);
         }
         // A sub-region counts when its centre is near the footprint, widened so that a point reaches its corners.
@@ -180,6 +183,7 @@ impl Material {
         settings: EvalSettings,
         gathered: &mut Gathered,
     ) {
+        let region = 0.5 * cells.edge;
         let (class, centre, offset) = self.owner_of(index, cells);
         let to_local = self.position_to_local(class);
         let from_centre = Ellipse { mean: footprint.mean - centre, ..*footprint };
@@ -188,11 +192,17 @@ impl Material {
             middle: to_local * (middle - centre) + offset,
             to_surface: to_local.inverse(),
             scale: to_local.determinant().abs().sqrt().recip(),
-            half: 0.25 * cells.edge,
+            half: 0.5 * region,
             extent: to_local.x_axis.abs() + to_local.y_axis.abs(),
             class,
         };
         match self.detail_for(&view.ellipse, settings) {
+            Detail::Tiles(level)
+                if level.first_tile == self.top_tile() && footprint.minor >= WHOLE_REGION_SIGMA * region =>
+            {
+                let weight = region * region * footprint.widened(region).density(middle);
+                gathered.add_tile(TileTerm { tile: level.first_tile, class, weight });
+            }
             Detail::Tiles(level) => {
                 let edge = level.tile_texels as f32;
                 let (low, high) = view.span(edge);

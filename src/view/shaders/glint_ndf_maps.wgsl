@@ -20,6 +20,8 @@ const GLINT_NDF_CLAMP: u32 = 1u;
 const GLINT_NDF_LOBE_TEXELS: f32 = 1.0;
 // Sub-regions of a stochastic surface that a footprint visits, at most.
 const GLINT_NDF_MAX_REGIONS: f32 = 64.0;
+// From this minor axis on (in sub-regions), where top tiles are enough, one tells all of a sub-region.
+const GLINT_NDF_WHOLE_REGION_SIGMA: f32 = 0.5;
 // From this minor axis on (in example edges) the top tile is enough for tiled examples.
 const GLINT_NDF_TOP_TILE_SIGMA: f32 = 0.5;
 // Pieces under a footprint that is widened by their own size, at most, relative to max_terms.
@@ -102,8 +104,7 @@ struct GlintNdfView {
     half: f32,
     // Half the box, in example texels, around a sub-region of half edge 1.
     extent: vec2f,
-    // Projected normal on the surface to that in the example, by rows, and its |determinant|.
-    normal_to_local: vec4f,
+    // |determinant| of the matrix from projected normals on the surface to those in the example.
     jacobian: f32,
 }
 
@@ -357,11 +358,16 @@ fn glint_ndf_few(ellipse: GlintNdfEllipse, settings: GlintNdfSettings, least: f3
 struct GlintNdfDetail {
     // Level of the tiles; -1 for boxes.
     level: i32,
-    // Edge of the boxes in example texels.
+    // Edge of the tiles or boxes in example texels.
     edge: f32,
 }
 
-// The coarsest tiles or boxes that resolve a footprint in the example.
+// The largest power of two up to x > 0.
+fn glint_ndf_power_below(x: f32) -> f32 {
+    return bitcast<f32>(bitcast<u32>(x) & 0x7f800000u);
+}
+
+// The coarsest tiles or boxes that resolve a footprint in the example. Tiles of a level are twice as large as those before.
 fn glint_ndf_detail(
     material: GlintNdfMaterial,
     ellipse: GlintNdfEllipse,
@@ -370,18 +376,11 @@ fn glint_ndf_detail(
     // Long thin footprints take coarser pieces rather than more than max_terms of them.
     let area = max(ellipse.minor, GLINT_NDF_FINEST_TEXELS) * ellipse.major;
     let least = 2.0 * GLINT_NDF_REACH * sqrt(area / f32(settings.max_terms));
-    var level = -1;
-    var enough = glint_ndf_few(ellipse, settings, least, GLINT_NDF_LOBE_TEXELS);
-    for (var k = 0u; k < material.levels; k++) {
-        let edge = f32(glint_ndf_record(material.level_records + k).x);
-        if edge > settings.tile_sigmas * ellipse.minor && enough {
-            break;
-        }
-        level = i32(k);
-        enough = glint_ndf_few(ellipse, settings, least, edge);
-    }
-    var edge = GLINT_NDF_LOBE_TEXELS;
-    if level < 0 {
+    // Edges are powers of two: the largest up to tile_sigmas, then coarser ones until they are few.
+    let finest = f32(glint_ndf_record(material.level_records).x);
+    var edge = glint_ndf_power_below(settings.tile_sigmas * ellipse.minor);
+    if edge < finest && glint_ndf_few(ellipse, settings, least, GLINT_NDF_LOBE_TEXELS) {
+        edge = GLINT_NDF_LOBE_TEXELS;
         for (var k = 0; k < 12; k++) {
             let finer = edge > settings.lobe_sigmas * ellipse.minor
                 && glint_ndf_few(ellipse, settings, least, 0.5 * edge);
@@ -390,6 +389,14 @@ fn glint_ndf_detail(
             }
             edge *= 0.5;
         }
+        return GlintNdfDetail(-1, edge);
+    }
+    edge = max(edge, finest);
+    var level = min(i32(round(log2(edge / finest))), i32(material.levels) - 1);
+    edge = finest * exp2(f32(level));
+    while level + 1 < i32(material.levels) && !glint_ndf_few(ellipse, settings, least, edge) {
+        level += 1;
+        edge *= 2.0;
     }
     return GlintNdfDetail(level, edge);
 }
@@ -533,14 +540,10 @@ fn glint_ndf_view_sum(
     material: GlintNdfMaterial,
     view: GlintNdfView,
     settings: GlintNdfSettings,
-    surface_s: vec2f,
+    detail: GlintNdfDetail,
+    s: vec2f,
 ) -> GlintNdfSum {
-    let s = glint_ndf_apply(view.normal_to_local, surface_s);
-    let detail = glint_ndf_detail(material, view.ellipse, settings);
-    var edge = detail.edge;
-    if detail.level >= 0 {
-        edge = f32(glint_ndf_record(material.level_records + u32(detail.level)).x);
-    }
+    let edge = detail.edge;
     // Box in example texels that holds the centres of all pieces that the sub-region may show.
     let reach = view.extent * (view.half + 0.5 * edge * view.scale);
     let low = view.middle - reach;
@@ -601,18 +604,16 @@ fn glint_ndf_tiled(
     let within = glint_ndf_tiled_place(material, position, footprint.mean);
     let ellipse = glint_ndf_transformed(glint_ndf_ellipse(footprint), position, within);
     let jacobian = abs(glint_ndf_determinant(normal));
-    var whole = ellipse.minor >= GLINT_NDF_TOP_TILE_SIGMA * max(size.x, size.y);
-    if !whole {
-        whole = glint_ndf_detail(material, ellipse, settings).level == i32(material.levels) - 1;
-    }
-    if whole {
-        let density = glint_ndf_tile_density(material, glint_ndf_top_tile(material), glint_ndf_apply(normal, s));
-        return GlintNdfSum(jacobian * density, 1.0, 1.0);
+    let local_s = glint_ndf_apply(normal, s);
+    let detail = glint_ndf_detail(material, ellipse, settings);
+    let wide = ellipse.minor >= GLINT_NDF_TOP_TILE_SIGMA * max(size.x, size.y);
+    if wide || detail.level == i32(material.levels) - 1 {
+        return GlintNdfSum(jacobian * glint_ndf_tile_density(material, glint_ndf_top_tile(material), local_s), 1.0, 1.0);
     }
     // A sub-region without end.
     let view =
-        GlintNdfView(ellipse, within, vec4f(1.0, 0.0, 0.0, 1.0), 1.0, 1.0e20, vec2f(1.0), normal, jacobian);
-    let sum = glint_ndf_view_sum(material, view, settings, s);
+        GlintNdfView(ellipse, within, vec4f(1.0, 0.0, 0.0, 1.0), 1.0, 1.0e20, vec2f(1.0), jacobian);
+    let sum = glint_ndf_view_sum(material, view, settings, detail, local_s);
     if sum.share > 0.0 {
         return sum;
     }
@@ -696,17 +697,26 @@ fn glint_ndf_region(
     let normal = bitcast<vec4f>(glint_ndf_record(material.palette_records + 2u * owner.class_index + 1u));
     var from_centre = footprint;
     from_centre.mean = footprint.mean - owner.centre;
+    let ellipse = glint_ndf_transformed(from_centre, position, owner.offset);
+    let local_s = glint_ndf_apply(normal, s);
+    let jacobian = abs(glint_ndf_determinant(normal));
+    let detail = glint_ndf_detail(material, ellipse, settings);
+    let edge = 0.5 * material.cell_texels;
+    if detail.level == i32(material.levels) - 1 && footprint.minor >= GLINT_NDF_WHOLE_REGION_SIGMA * edge {
+        let weight = edge * edge * glint_ndf_gaussian(glint_ndf_widened(footprint, edge), middle);
+        let density = glint_ndf_tile_density(material, glint_ndf_top_tile(material), local_s);
+        return GlintNdfSum(weight * jacobian * density, weight, 1.0);
+    }
     let view = GlintNdfView(
-        glint_ndf_transformed(from_centre, position, owner.offset),
+        ellipse,
         glint_ndf_apply(position, middle - owner.centre) + owner.offset,
         glint_ndf_inverse(position),
         1.0 / sqrt(abs(glint_ndf_determinant(position))),
-        0.25 * material.cell_texels,
+        0.5 * edge,
         abs(position.xz) + abs(position.yw),
-        normal,
-        abs(glint_ndf_determinant(normal)),
+        jacobian,
     );
-    return glint_ndf_view_sum(material, view, settings, s);
+    return glint_ndf_view_sum(material, view, settings, detail, local_s);
 }
 
 // Shares of four palette entries in one texel of the class texture.
@@ -797,7 +807,7 @@ fn glint_ndf_stochastic(
     ellipse.mean = cells.mean;
     let region = 0.5 * material.cell_texels;
     let regions = 4.0 * GLINT_NDF_REACH * GLINT_NDF_REACH * ellipse.major * max(ellipse.minor, region) / (region * region);
-    let many = regions > GLINT_NDF_MAX_REGIONS;
+    let many = regions > min(GLINT_NDF_MAX_REGIONS, f32(settings.max_terms));
     if ellipse.minor >= GLINT_NDF_CLASS_SIGMA_CELLS * material.cell_texels || many {
         return glint_ndf_classes(material, ellipse, cells, settings, s);
     }
