@@ -6,7 +6,7 @@ use crate::render::{Material, Method, Renderer, Shown};
 use crate::scene::Mesh;
 use glam::Vec3;
 use glint_bake_core::error::BakeError;
-use glint_bake_core::{area_light, dictionary, environment};
+use glint_bake_core::{area_light, dictionary, environment, ndf_maps};
 use glint_formats::Pack;
 use std::rc::Rc;
 
@@ -37,6 +37,7 @@ impl Subjects {
         let mut subjects = Subjects::default();
         for pack in packs {
             subjects.add_dictionaries(gpu, pack, colours)?;
+            subjects.add_ndf_maps(gpu, pack)?;
             subjects.add_environments(gpu, pack)?;
             subjects.add_area_lights(gpu, pack)?;
         }
@@ -76,6 +77,22 @@ impl Subjects {
         Ok(())
     }
 
+    /// Layered materials first, then each of its own.
+    fn add_ndf_maps(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
+        let read = |name: &str| ndf_maps::sections::from_pack(pack, name).map_err(bad);
+        for layered in ndf_maps::sections::layered(pack).map_err(bad)? {
+            let (base, coat) = (read(&layered.base)?, read(&layered.coat)?);
+            let data = methods::ndf_maps::upload(gpu, &base, Some((&coat, layered.coat_f0)))?;
+            let material = Material { f0: layered.base_f0, ..ndf_material(&base) };
+            self.add(Method::NdfMaps, &format!("{}+{}", layered.coat, layered.base), data, material);
+        }
+        for name in ndf_maps::sections::materials(pack) {
+            let baked = read(name)?;
+            self.add(Method::NdfMaps, name, methods::ndf_maps::upload(gpu, &baked, None)?, ndf_material(&baked));
+        }
+        Ok(())
+    }
+
     /// The first environment lights the scene; the others would need one of their own.
     fn add_environments(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
         for name in environment::sections::environments(pack) {
@@ -110,6 +127,17 @@ impl Subjects {
             self.share(Method::PlainLtc, name, &data, material);
         }
         Ok(())
+    }
+}
+
+/// A tiny example repeats some times over the surface.
+fn ndf_material(baked: &ndf_maps::eval::Material) -> Material {
+    const EXAMPLES: f32 = 16.0;
+    let params = &baked.maps.params;
+    Material {
+        intrinsic_roughness: params.intrinsic_roughness,
+        texels_per_unit: EXAMPLES * params.width.max(params.height) as f32,
+        ..Material::default()
     }
 }
 

@@ -56,6 +56,12 @@ impl Ellipse {
         }
     }
 
+    /// Pieces of `edge` in the box around the ellipse that is widened by them.
+    pub fn pieces(&self, edge: f32) -> f32 {
+        let widened = self.widened(edge);
+        (2.0 * REACH * widened.minor / edge) * (2.0 * REACH * widened.major / edge)
+    }
+
     /// Density at x.
     pub fn density(&self, x: Vec2) -> f32 {
         let d = x - self.mean;

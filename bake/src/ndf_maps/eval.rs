@@ -34,9 +34,11 @@ pub struct TileTerm {
 /// lobe. Unit coordinates are those of the example's disk, turned so that the longer edge lies along x, over σ_r.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LobeTerm {
-    /// Middle of the parallelogram in the surface's disk.
+    /// Surface's disk → example's disk.
+    pub to_local: Mat2,
+    /// Middle of the parallelogram in the example's disk.
     pub mean: Vec2,
-    /// Surface's disk → unit coordinates.
+    /// Offsets in the example's disk → unit coordinates.
     pub to_unit: Mat2,
     /// Half the parallelogram's length and height in unit coordinates.
     pub half: Vec2,
@@ -45,7 +47,7 @@ pub struct LobeTerm {
     /// Change of the footprint's logarithm from the middle to the end of both edges: where in the box a normal lies says
     /// how much of the footprint it gets.
     pub tilt: Vec2,
-    /// Share of the footprint times the Jacobian of `to_unit`, over the lobe's mass inside the disk.
+    /// Share of the footprint times the Jacobian of both matrices, over the lobe's mass inside the disk.
     pub peak: f32,
 }
 
@@ -183,6 +185,9 @@ fn tent(p: f32) -> Taps {
     Taps { first: cell as i32, weights: [1.0 - (p - cell), p - cell, 0.0] }
 }
 
+/// Largest tilt: a footprint that needs more is far thinner than its boxes, and all of it lies at their ends.
+const MAX_TILT: Vec2 = Vec2::splat(20.0);
+
 impl LobeTerm {
     /// Lobe of a box of edge `edge` (example texels) around an example point of projected normal `s` and Jacobian
     /// `jacobian`, with the intrinsic roughness `sigma`, seen through the palette's `normal_to_local`. The box has
@@ -210,19 +215,19 @@ impl LobeTerm {
         // Edges that are nearly parallel have no height to shear over; their spread is the longer edge's.
         let shear = if height.abs() > 1e-3 * length { along.dot(short) / height } else { 0.0 };
         let turn = Mat2::from_cols(Vec2::new(along.x, -along.y), Vec2::new(along.y, along.x));
-        let to_unit = turn * normal_to_local * (1.0 / sigma);
         let half = Vec2::new(0.5 * length, 0.5 * height.abs()) / sigma;
-        let tilt = Vec2::new(tilt.x, tilt.y.copysign(tilt.y * height));
+        let tilt = Vec2::new(tilt.x, tilt.y.copysign(tilt.y * height)).clamp(-MAX_TILT, MAX_TILT);
         // The places in the box that `density` infers spread less than the box where the lobe blurs it.
         let inferred = tilt * half / (half * half + 3.0).map(f32::sqrt);
         let normalised = inside_disk(s, long, short, sigma) * mean_exp(inferred.x) * mean_exp(inferred.y);
         LobeTerm {
-            mean: normal_to_local.inverse() * s,
-            to_unit,
+            to_local: normal_to_local,
+            mean: s,
+            to_unit: turn * (1.0 / sigma),
             half,
             shear,
             tilt,
-            peak: weight * to_unit.determinant().abs() / normalised,
+            peak: weight * normal_to_local.determinant().abs() / (sigma * sigma * normalised),
         }
     }
 
@@ -230,7 +235,7 @@ impl LobeTerm {
     pub fn density(&self, s: Vec2) -> f32 {
         /// Beyond this many standard deviations the lobe is nothing.
         const CUT: f32 = 5.0;
-        let x = self.to_unit * (s - self.mean);
+        let x = self.to_unit * (self.to_local * s - self.mean);
         if x.y.abs() > self.half.y + CUT {
             return 0.0;
         }

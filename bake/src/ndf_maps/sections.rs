@@ -82,6 +82,11 @@ pub fn from_pack(pack: &Pack, name: &str) -> Result<Material> {
     })
 }
 
+/// The layered materials of a pack.
+pub fn layered(pack: &Pack) -> Result<Vec<LayeredMaterial>> {
+    names_with(pack, LAYERS).into_iter().map(|name| parameters(pack, LAYERS, name)).collect()
+}
+
 /// Names of the materials of this method in a pack.
 pub fn materials(pack: &Pack) -> Vec<&str> {
     names_with(pack, PARAMS)

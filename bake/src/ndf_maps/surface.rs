@@ -9,16 +9,22 @@
 use super::ellipse::{EVERYWHERE, Ellipse, FINEST_TEXELS, Grid, REACH, Slot, for_each_cell, for_each_tile};
 use super::eval::{LobeTerm, Material, Terms, TileTerm, matrix};
 use crate::footprint::Footprint;
-use glam::{DVec2, Mat2, Vec2};
+use glam::{DVec2, IVec2, Mat2, Vec2};
 use glint_formats::ndf_maps::{Level, PlacementKind};
 
 /// Edge of the boxes that are seen as lobes, at most, in example texels: those boxes are the bilinear cells.
 const LOBE_TEXELS: f32 = 1.0;
 /// Sub-regions of a stochastic surface that a footprint visits at most.
 const MAX_REGIONS: f32 = 64.0;
+/// From this minor axis on (in sub-regions) the share of a sub-region follows from its middle to 2.4 %; where top tiles are
+/// enough, one tells all of it.
+const WHOLE_REGION_SIGMA: f32 = 0.5;
 /// From this minor axis on (in example edges) shares of tiled examples are even to 1.4 % and the top tile is enough.
 const TOP_TILE_SIGMA: f32 = 0.5;
 
+/// Pieces under a footprint that is widened by their own size, at most, relative to `max_terms`: thin footprints are seen in
+/// pieces wider than they are.
+const MOST_OF_TERMS: f32 = 4.0;
 /// A tile that a sub-region cuts is split from this share on, relative to an even share of `max_terms`.
 const SPLIT_FROM: f32 = 2.0;
 /// From this minor axis on (in cells) a stochastic surface is seen as shares of transforms.
@@ -31,7 +37,7 @@ pub struct EvalSettings {
     pub tile_sigmas: f32,
     /// Largest box that is seen as one lobe, likewise.
     pub lobe_sigmas: f32,
-    /// Tiles or lobes in the area of the footprint's ellipse, at most, but for those that sub-regions cut; a footprint that
+    /// Tiles, lobes or sub-regions in the area of the footprint's ellipse, at most, but for those that sub-regions cut; a footprint that
     /// would need more sees coarser ones.
     pub max_terms: u32,
     /// How often a tile that a sub-region shows only in part is split.
@@ -67,7 +73,7 @@ impl Material {
         match self.placement.params.kind {
             PlacementKind::Tiled => self.gather_tiled(footprint, settings, &mut gathered),
             PlacementKind::Stochastic { cells_x, cell_texels, .. } => {
-                let cells = Cells { count: cells_x as i32, edge: cell_texels };
+                let cells = Cells::around(footprint.mean, cells_x as i32, cell_texels);
                 self.gather_stochastic(footprint, cells, settings, &mut gathered);
             }
         }
@@ -84,8 +90,8 @@ impl Material {
 
     fn gather_tiled(&self, footprint: &Footprint, settings: EvalSettings, gathered: &mut Gathered) {
         let to_local = self.position_to_local(0);
-        let local = reduced(&footprint.transformed(to_local.as_dmat2(), DVec2::ZERO), self.example_size());
-        let ellipse = Ellipse::new(&local);
+        let mean = within_period(to_local.as_dmat2() * footprint.mean, self.example_size());
+        let ellipse = Ellipse { mean, ..Ellipse::new(footprint).transformed(to_local, Vec2::ZERO) };
         let size = self.example_size().max_element() as f32;
         if ellipse.minor >= TOP_TILE_SIGMA * size {
             return gathered.add_tile(TileTerm { tile: self.top_tile(), class: 0, weight: 1.0 });
@@ -116,13 +122,11 @@ impl Material {
     fn detail_for(&self, ellipse: &Ellipse, settings: EvalSettings) -> Detail {
         // Long thin footprints take coarser pieces rather than more than `max_terms` of them.
         let least = 2.0 * REACH * (ellipse.minor.max(FINEST_TEXELS) * ellipse.major / settings.max_terms as f32).sqrt();
+        let few = |edge: f32| edge >= least && ellipse.pieces(edge) <= MOST_OF_TERMS * settings.max_terms as f32;
         let mut chosen = None;
         for level in &self.maps.params.levels {
             let edge = level.tile_texels as f32;
-            let finer_is_enough = match chosen {
-                None => LOBE_TEXELS >= least,
-                Some(Level { tile_texels, .. }) => tile_texels as f32 >= least,
-            };
+            let finer_is_enough = few(chosen.map_or(LOBE_TEXELS, |Level { tile_texels, .. }| tile_texels as f32));
             if edge <= settings.tile_sigmas * ellipse.minor || !finer_is_enough {
                 chosen = Some(*level);
             }
@@ -131,7 +135,7 @@ impl Material {
             return Detail::Tiles(level);
         }
         let mut edge = LOBE_TEXELS;
-        while edge > FINEST_TEXELS && edge > settings.lobe_sigmas * ellipse.minor && 0.5 * edge >= least {
+        while edge > FINEST_TEXELS && edge > settings.lobe_sigmas * ellipse.minor && few(0.5 * edge) {
             edge *= 0.5;
         }
         Detail::Boxes(edge)
@@ -148,11 +152,10 @@ impl Material {
     }
 
     fn gather_stochastic(&self, footprint: &Footprint, cells: Cells, settings: EvalSettings, gathered: &mut Gathered) {
-        let footprint = reduced(footprint, DVec2::splat(cells.count as f64 * cells.edge as f64));
-        let ellipse = Ellipse::new(&footprint);
+        let ellipse = Ellipse { mean: cells.mean, ..Ellipse::new(footprint) };
         let region = 0.5 * cells.edge;
         let regions = (2.0 * REACH).powi(2) * ellipse.major * ellipse.minor.max(region) / (region * region);
-        if ellipse.minor >= CLASS_SIGMA_CELLS * cells.edge || regions > MAX_REGIONS {
+        if ellipse.minor >= CLASS_SIGMA_CELLS * cells.edge || regions > MAX_REGIONS.min(settings.max_terms as f32) {
             return self.gather_classes(&ellipse, cells, settings, gathered);
         }
         // A sub-region counts when its centre is near the footprint, widened so that a point reaches its corners.
@@ -160,39 +163,46 @@ impl Material {
             &ellipse.widened(region * 1.2),
             Grid { origin: 0.0, edge: region },
             EVERYWHERE,
-            |_, _, middle| {
-                self.gather_region(&ellipse, cells, middle, settings, gathered);
+            |i, j, middle| {
+                self.gather_region(&ellipse, cells, (IVec2::new(i, j), middle), settings, gathered);
             },
         );
         if gathered.share <= 0.0 {
-            let (class, centre, offset) = self.owner_at(ellipse.mean, cells);
+            let (class, centre, offset) = self.owner_of((ellipse.mean / region).floor().as_ivec2(), cells);
             let local = self.position_to_local(class) * (ellipse.mean - centre) + offset;
             self.add_lobe(&ellipse, local, 0.0, class, 1.0, gathered);
         }
     }
 
-    /// What the sub-region around `middle` shows of its owner under the footprint.
+    /// What a sub-region, by its index and middle, shows of its owner under the footprint.
     fn gather_region(
         &self,
         footprint: &Ellipse,
         cells: Cells,
-        middle: Vec2,
+        (index, middle): (IVec2, Vec2),
         settings: EvalSettings,
         gathered: &mut Gathered,
     ) {
-        let (class, centre, offset) = self.owner_at(middle, cells);
+        let region = 0.5 * cells.edge;
+        let (class, centre, offset) = self.owner_of(index, cells);
         let to_local = self.position_to_local(class);
-        let shift = offset - to_local * centre;
+        let from_centre = Ellipse { mean: footprint.mean - centre, ..*footprint };
         let view = RegionView {
-            ellipse: footprint.transformed(to_local, shift),
-            middle: to_local * middle + shift,
+            ellipse: from_centre.transformed(to_local, offset),
+            middle: to_local * (middle - centre) + offset,
             to_surface: to_local.inverse(),
             scale: to_local.determinant().abs().sqrt().recip(),
-            half: 0.25 * cells.edge,
+            half: 0.5 * region,
             extent: to_local.x_axis.abs() + to_local.y_axis.abs(),
             class,
         };
         match self.detail_for(&view.ellipse, settings) {
+            Detail::Tiles(level)
+                if level.first_tile == self.top_tile() && footprint.minor >= WHOLE_REGION_SIGMA * region =>
+            {
+                let weight = region * region * footprint.widened(region).density(middle);
+                gathered.add_tile(TileTerm { tile: level.first_tile, class, weight });
+            }
             Detail::Tiles(level) => {
                 let edge = level.tile_texels as f32;
                 let (low, high) = view.span(edge);
@@ -240,36 +250,41 @@ impl Material {
         }
     }
 
-    /// Owner of surface position `at`: palette entry, centre on the surface, example point that lies at the centre.
-    fn owner_at(&self, at: Vec2, cells: Cells) -> (u32, Vec2, Vec2) {
-        let cell = (at / cells.edge).floor();
-        let quadrant = ((at / cells.edge - cell) * 2.0).floor().clamp(Vec2::ZERO, Vec2::ONE);
-        let (cx, cy) = (cell.x as i32, cell.y as i32);
-        let own = self.placement.noise[cells.index(cx, cy)];
-        let neighbour = own.class_and_owners >> (16 + 4 * (quadrant.x as u32 + 2 * quadrant.y as u32)) & 0xf;
-        let (dx, dy) = ((neighbour % 3) as i32 - 1, (neighbour / 3) as i32 - 1);
-        let owner = self.placement.noise[cells.index(cx + dx, cy + dy)];
+    /// Owner of a sub-region: palette entry, centre on the surface, example point that lies at the centre.
+    fn owner_of(&self, region: IVec2, cells: Cells) -> (u32, Vec2, Vec2) {
+        let (cell, quadrant) = (region >> 1, region & 1);
+        let own = self.placement.noise[cells.index(cell)];
+        let neighbour = own.class_and_owners >> (16 + 4 * (quadrant.x + 2 * quadrant.y)) & 0xf;
+        let cell = cell + IVec2::new((neighbour % 3) as i32 - 1, (neighbour / 3) as i32 - 1);
+        let owner = self.placement.noise[cells.index(cell)];
         let unorm = |v: u32| Vec2::new((v & 0xffff) as f32, (v >> 16) as f32) / 65535.0;
-        let centre = (Vec2::new((cx + dx) as f32, (cy + dy) as f32) + unorm(owner.centre)) * cells.edge;
-        (owner.class_and_owners & 0xff, centre, unorm(owner.offset) * self.example_size().as_vec2())
+        let centre = (cell.as_vec2() + unorm(owner.centre)) * cells.edge;
+        (owner.class_and_owners & 0xff, centre, unorm(owner.offset) * self.size())
     }
 
     /// The top tile under every transform, by the share of cells that use it.
     fn gather_classes(&self, ellipse: &Ellipse, cells: Cells, settings: EvalSettings, gathered: &mut Gathered) {
-        let least = 2.0 * REACH * (ellipse.minor * ellipse.major / settings.max_terms as f32).sqrt();
-        let mut mip = 0;
-        while 1 << mip < cells.count && cells.edge * (2 << mip) as f32 <= ellipse.minor.max(least) {
+        let most = MOST_OF_TERMS * settings.max_terms as f32;
+        let (mut mip, mut block) = (0, cells.edge);
+        while 1 << mip < cells.count
+            && (2.0 * block <= settings.tile_sigmas * ellipse.minor || ellipse.pieces(block) > most)
+        {
             mip += 1;
+            block *= 2.0;
         }
         let palette = self.placement.params.palette_len as usize;
         let mut shares = vec![0.0f32; palette];
-        let block = cells.edge * (1 << mip) as f32;
         let widened = ellipse.widened(block);
         if 1 << mip == cells.count {
-            self.add_shares(mip, 0, 0, 1.0, cells, &mut shares);
+            self.add_shares(mip, IVec2::ZERO, 1.0, cells, &mut shares);
         } else {
-            for_each_cell(&widened, Grid { origin: 0.0, edge: block }, EVERYWHERE, |i, j, centre| {
-                self.add_shares(mip, i, j, widened.density(centre) * block * block, cells, &mut shares);
+            // The block that holds the base cell, and where it begins.
+            let first = cells.base >> mip;
+            let origin = ((first << mip) - cells.base).as_vec2() * cells.edge;
+            let from_first = Ellipse { mean: widened.mean - origin, ..widened };
+            for_each_cell(&from_first, Grid { origin: 0.0, edge: block }, EVERYWHERE, |i, j, centre| {
+                let weight = from_first.density(centre) * block * block;
+                self.add_shares(mip, first + IVec2::new(i, j), weight, cells, &mut shares);
             });
         }
         for (class, weight) in shares.into_iter().enumerate() {
@@ -280,11 +295,11 @@ impl Material {
     }
 
     /// Adds `weight` times the shares of one texel of the class texture.
-    fn add_shares(&self, mip: u32, i: i32, j: i32, weight: f32, cells: Cells, shares: &mut [f32]) {
+    fn add_shares(&self, mip: u32, block: IVec2, weight: f32, cells: Cells, shares: &mut [f32]) {
         let layers = shares.len().div_ceil(4);
         let first: usize = (0..mip).map(|m| ((cells.count >> m) as usize).pow(2) * layers * 4).sum();
         let size = cells.count >> mip;
-        let texel = (j.rem_euclid(size) * size + i.rem_euclid(size)) as usize;
+        let texel = (block.y.rem_euclid(size) * size + block.x.rem_euclid(size)) as usize;
         for (class, share) in shares.iter_mut().enumerate() {
             let at = first + ((class / 4) * (size * size) as usize + texel) * 4 + class % 4;
             *share += weight * self.placement.classes[at] as f32 / 255.0;
@@ -347,16 +362,29 @@ impl RegionView {
     }
 }
 
-/// Grid of a stochastic placement.
+/// Grid of a stochastic placement as a footprint sees it: positions are relative to the corner of the base cell, which keeps
+/// their digits far from the origin.
 #[derive(Clone, Copy)]
 struct Cells {
     count: i32,
     edge: f32,
+    /// The cell that holds the footprint's centre, within the first period.
+    base: IVec2,
+    /// The footprint's centre.
+    mean: Vec2,
 }
 
 impl Cells {
-    fn index(&self, x: i32, y: i32) -> usize {
-        (y.rem_euclid(self.count) * self.count + x.rem_euclid(self.count)) as usize
+    fn around(mean: DVec2, count: i32, edge: f32) -> Cells {
+        let cell = (mean / edge as f64).floor();
+        let base = cell - (cell / count as f64).floor() * count as f64;
+        Cells { count, edge, base: base.as_ivec2(), mean: (mean - cell * edge as f64).as_vec2() }
+    }
+
+    /// Noise texel of a cell relative to the base.
+    fn index(&self, cell: IVec2) -> usize {
+        let at = self.base + cell;
+        (at.y.rem_euclid(self.count) * self.count + at.x.rem_euclid(self.count)) as usize
     }
 }
 
@@ -365,8 +393,7 @@ fn boxes(edge: f32) -> Grid {
     Grid { origin: -0.5, edge }
 }
 
-/// The footprint moved by whole periods so that its centre lies in the first one.
-fn reduced(footprint: &Footprint, period: DVec2) -> Footprint {
-    let mean = footprint.mean - (footprint.mean / period).floor() * period;
-    Footprint { mean, covariance: footprint.covariance }
+/// A position moved by whole periods into the first one.
+fn within_period(x: DVec2, period: DVec2) -> Vec2 {
+    (x - (x / period).floor() * period).as_vec2()
 }

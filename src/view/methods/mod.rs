@@ -3,3 +3,4 @@
 pub mod area_light;
 pub mod dictionary;
 pub mod environment;
+pub mod ndf_maps;

@@ -16,5 +16,5 @@ pub use present::{Display, Overlay, ToneMapping};
 pub use renderer::{Compare, Renderer, Side, View};
 pub use shown::{LightKind, Method, Shown};
 pub use uniforms::{
-    Camera, Environment, Lights, MAX_POINT_LIGHTS, Material, PointLight, RectLight, SWAP_LAYERS, Scene, Sun,
+    ACCURATE, Camera, Environment, Lights, MAX_POINT_LIGHTS, Material, PointLight, RectLight, SWAP_LAYERS, Scene, Sun,
 };

@@ -24,6 +24,8 @@ pub enum Method {
     Smooth,
     /// Slope dictionary.
     Dictionary,
+    /// Multi-scale NDF maps of tiny examples, in one or two layers.
+    NdfMaps,
     /// Environment with glints, by radiance levels.
     Environment,
     /// Multi-scale LTC: mean normals with the roughness of what they average.
@@ -47,6 +49,12 @@ impl Method {
             Method::Dictionary => {
                 Facts { name: "dictionary", light: LightKind::Sun, baseline: Some(Method::Smooth), has_map: false }
             }
+            Method::NdfMaps => Facts {
+                name: "ndf-maps",
+                light: LightKind::Sun,
+                baseline: Some(Method::Smooth),
+                has_map: true,
+            },
             Method::Environment => Facts {
                 name: "environment",
                 light: LightKind::Environment,

@@ -8,6 +8,8 @@ pub const MAX_POINT_LIGHTS: usize = 4;
 
 /// Bit of [`Material::switches`]: layers of two-layer materials are exchanged.
 pub const SWAP_LAYERS: u32 = 1;
+/// Bit of [`Material::switches`]: NDF maps are read with the settings that their accuracy is measured with.
+pub const ACCURATE: u32 = 2;
 
 /// Where the camera is. +Y of the world is up.
 #[derive(Clone, Copy, Debug, PartialEq)]

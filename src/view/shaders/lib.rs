@@ -37,6 +37,7 @@ macro_rules! modules {
 modules! {
     "glint_brdf" needs [];
     "glint_hash" needs [];
+    "glint_footprint" needs [];
     "glint_dictionary" needs ["glint_hash"];
     "bind_dictionary" needs ["glint_dictionary"];
     "query_dictionary" needs ["bind_dictionary"];
@@ -54,6 +55,10 @@ modules! {
     "bind_environment" needs ["glint_environment"];
     "bind_environment_exact" needs ["glint_environment"];
     "query_environment" needs ["glint_environment", "glint_surface_cells"];
+    "glint_ndf_ellipse" needs ["glint_footprint"];
+    "glint_ndf_maps" needs ["glint_ndf_ellipse"];
+    "bind_ndf_maps" needs ["glint_ndf_maps"];
+    "query_ndf_maps" needs ["bind_ndf_maps"];
     "view_scene" needs [];
     "view_surface" needs ["view_scene", "view_sky", "glint_brdf", "glint_hash"];
     "view_sky" needs [];
@@ -69,6 +74,7 @@ modules! {
     "shade_environment_surface" needs ["view_scene", "bind_environment"];
     "shade_environment_smooth" needs ["shade_environment_surface"];
     "shade_environment" needs ["shade_environment_surface", "shade_smooth_brdf", "glint_surface_cells"];
+    "shade_ndf_maps" needs ["view_scene", "glint_brdf", "bind_ndf_maps"];
     "shade_rect_points" needs ["view_scene"];
 }
 
@@ -79,6 +85,7 @@ pub type Program = (&'static str, &'static [&'static str]);
 pub const SHADING: &[Program] = &[
     ("smooth", &["view_surface", "shade_smooth", "shade_rect_points", "shade_environment_smooth"]),
     ("dictionary", &["view_surface", "shade_dictionary", "shade_rect_points", "shade_environment_smooth"]),
+    ("ndf-maps", &["view_surface", "shade_ndf_maps", "shade_rect_points", "shade_environment_smooth"]),
     ("environment", &["view_surface", "shade_environment", "shade_rect_points"]),
     ("area-light", &["view_surface", "shade_area_light", "shade_environment_smooth"]),
     ("plain-ltc", &["view_surface", "shade_plain_ltc", "shade_environment_smooth"]),

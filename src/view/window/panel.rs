@@ -2,7 +2,7 @@
 
 use super::controls::{Action, Controls, Mode};
 use super::lights;
-use crate::render::{Material, Method, Overlay, Shown, ToneMapping};
+use crate::render::{ACCURATE, Material, Method, Overlay, SWAP_LAYERS, Shown, ToneMapping};
 use crate::settings::{Against, Settings};
 use egui::{Context, Slider, Ui};
 
@@ -110,6 +110,11 @@ fn parameters(ui: &mut Ui, method: Method, material: &mut Material) {
             ui.add(Slider::new(&mut material.density_randomisation, 0.0..=10.0).text("density randomisation"));
             ui.add(Slider::new(&mut material.max_anisotropy, 1.0..=64.0).logarithmic(true).text("largest anisotropy"));
         }
+        Method::NdfMaps => {
+            texels(ui, material);
+            switch(ui, material, SWAP_LAYERS, "exchange the layers");
+            switch(ui, material, ACCURATE, "finer tiles: slower, more accurate");
+        }
         Method::Environment => {
             roughness(ui, material);
             facets(ui, material);
@@ -147,6 +152,13 @@ fn facets(ui: &mut Ui, material: &mut Material) {
         ui.add(egui::DragValue::new(&mut material.seed));
         ui.label("seed");
     });
+}
+
+fn switch(ui: &mut Ui, material: &mut Material, bit: u32, label: &str) {
+    let mut on = material.switches & bit != 0;
+    if ui.checkbox(&mut on, label).changed() {
+        material.switches ^= bit;
+    }
 }
 
 fn texels(ui: &mut Ui, material: &mut Material) {

@@ -7,4 +7,5 @@ mod area_light;
 mod counting;
 mod dictionary;
 mod environment;
+mod ndf_maps;
 mod support;

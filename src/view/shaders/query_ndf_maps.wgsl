@@ -1,0 +1,45 @@
+// Answers queries of the density of normals under footprints on NDF maps, one an invocation.
+
+struct NdfMapsQuery {
+    mean: vec2f,
+    s: vec2f,
+    // Covariance of the footprint, surface texels^2.
+    xx: f32,
+    xy: f32,
+    yy: f32,
+    tile_sigmas: f32,
+    lobe_sigmas: f32,
+    max_terms: u32,
+    splits: u32,
+    // Index of the material.
+    layer: u32,
+}
+
+struct NdfMapsAnswer {
+    density: f32,
+    terms: f32,
+    // 1 where the reach mask has the query.
+    reached: f32,
+    // Density by the definition at the footprint's centre.
+    at_point: f32,
+}
+
+@group(0) @binding(0) var<storage, read> queries: array<NdfMapsQuery>;
+@group(0) @binding(1) var<storage, read_write> answers: array<NdfMapsAnswer>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if id.x >= arrayLength(&queries) {
+        return;
+    }
+    let q = queries[id.x];
+    let material = ndf_maps.layers[min(q.layer, 1u)].material;
+    let settings = GlintNdfSettings(q.tile_sigmas, q.lobe_sigmas, q.max_terms, q.splits);
+    let sum = glint_ndf_density(material, GlintFootprint(q.mean, q.xx, q.xy, q.yy), settings, q.s);
+    answers[id.x] = NdfMapsAnswer(
+        sum.density,
+        sum.terms,
+        select(0.0, 1.0, glint_ndf_reaches(material, q.s)),
+        glint_ndf_density_at_point(material, q.mean, q.s),
+    );
+}
