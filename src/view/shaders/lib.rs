@@ -33,10 +33,17 @@ macro_rules! modules {
 
 modules! {
     "glint_brdf" needs [];
+    "glint_footprint" needs [];
     "glint_hash" needs [];
     "glint_dictionary" needs ["glint_hash"];
     "bind_dictionary" needs ["glint_dictionary"];
     "query_dictionary" needs ["bind_dictionary"];
+    "glint_lobes" needs ["glint_footprint"];
+    "glint_synthesis" needs ["glint_hash"];
+    "bind_lobes" needs ["glint_lobes", "glint_synthesis"];
+    "query_lobes" needs ["bind_lobes"];
+    "glint_surface" needs ["glint_lobes", "glint_synthesis"];
+    "query_surface" needs ["bind_lobes", "glint_surface"];
     "view_scene" needs [];
     "view_surface" needs ["view_scene", "glint_hash"];
     "shade_smooth" needs ["view_scene", "glint_brdf"];

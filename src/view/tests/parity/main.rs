@@ -3,4 +3,5 @@
 //! Without an adapter the tests say that they are skipped; with `GLINT_REQUIRE_ADAPTER=1` they fail instead.
 
 mod dictionary;
+mod lobes;
 mod support;
