@@ -5,3 +5,4 @@
 mod dictionary;
 mod lobes;
 mod support;
+mod surface;
