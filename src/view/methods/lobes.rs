@@ -21,16 +21,12 @@ struct MapUniform {
     height: u32,
     wrap: u32,
     nearest: u32,
-    storage: u32,
     normals: u32,
     lobes_per_cell: u32,
     step_texels: u32,
     levels: u32,
-    unused: u32,
     normal_low: [f32; 2],
     normal_extent: [f32; 2],
-    /// WGSL aligns the next structure in a uniform to 16 bytes.
-    padding: [u32; 2],
 }
 
 /// `GlintSynthesis`.
@@ -93,15 +89,12 @@ fn map_uniform(params: &LobesParams) -> MapUniform {
         height: params.height,
         wrap: wrap(params.wrap),
         nearest: u32::from(params.filter == Filter::Nearest),
-        storage: u32::from(params.storage == LobeStorage::Half),
         normals: u32::from(params.normals == NormalsStorage::Unorm8),
         lobes_per_cell: params.lobes_per_cell,
         step_texels: params.step_texels,
         levels: params.levels.len() as u32,
-        unused: 0,
         normal_low: params.normal_low,
         normal_extent: params.normal_extent,
-        padding: [0; 2],
     }
 }
 
@@ -148,6 +141,25 @@ fn synthesis_uniform(synthesis: &Synthesis) -> SynthesisUniform {
             ..uniform
         },
     }
+}
+
+/// The WGSL files that a program of these lobes takes in besides `query_lobes` or `shade_lobes`.
+pub fn modules(params: &LobesParams) -> [&'static str; 1] {
+    match params.storage {
+        LobeStorage::Packed => ["glint_lobes_packed"],
+        LobeStorage::Half => ["glint_lobes_half"],
+    }
+}
+
+/// The WGSL files that a program of this surface takes in besides `query_surface` or `shade_surface`; with `whole_blocks`
+/// ([`glint_bake_core::surface::SurfaceSettings::whole_blocks`]) seams are not followed.
+pub fn surface_modules(surface: &Surface, whole_blocks: bool) -> [&'static str; 3] {
+    let [records] = modules(&surface.lobes.params);
+    let arrangement = match surface.synthesis.params.layout {
+        Layout::Patches { .. } => "glint_synthesis_grid",
+        Layout::CornerTiles { .. } => "glint_synthesis_tiles",
+    };
+    [records, arrangement, if whole_blocks { "glint_surface_blocks" } else { "glint_surface_seams" }]
 }
 
 /// Uploads the lobes of a map: for `query_lobes` and `shade_lobes`.

@@ -9,7 +9,7 @@ struct LobesData {
 
 @group(1) @binding(0) var<uniform> lobes: LobesData;
 // Section LOBE as it is in the pack.
-@group(1) @binding(1) var<storage, read> lobes_records: array<u32>;
+@group(1) @binding(1) var<storage, read> lobes_records: array<vec4u>;
 // Section LONM as it is in the pack.
 @group(1) @binding(2) var<storage, read> lobes_normals: array<u32>;
 // Section SYPO as it is in the pack: x in the lower half; at least one element.
@@ -21,7 +21,7 @@ fn glint_lobes_level(index: u32) -> GlintLobesLevel {
     return lobes.levels[min(index, 15u)];
 }
 
-fn glint_lobes_word(index: u32) -> u32 {
+fn glint_lobes_words(index: u32) -> vec4u {
     return lobes_records[index];
 }
 

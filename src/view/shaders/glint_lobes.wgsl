@@ -5,11 +5,16 @@
 //
 // Accessors that the including program defines:
 //   fn glint_lobes_level(index: u32) -> GlintLobesLevel     level of the section LOPP, 0 the finest
-//   fn glint_lobes_word(index: u32) -> u32                  word of the section LOBE: 4 a lobe if packed, else 8
+//   fn glint_lobes_words(index: u32) -> vec4u               16 bytes of the section LOBE: a lobe if packed, else half of one
+//   fn glint_lobes_lobe(map: GlintLobesMap, level: GlintLobesLevel, index: u32) -> GlintLobe
+//                                                           a lobe by its index among all: by glint_lobes_packed.wgsl or
+//                                                           glint_lobes_half.wgsl, as the pack stores them
 //   fn glint_lobes_normals_word(index: u32) -> u32          word of the section LONM, row by row: a texel of 16 bits a channel,
 //                                                           or two texels of 8, the first in the lower half
 
 const GLINT_LOBES_PI: f32 = 3.14159265;
+// 1 / (2 pi).
+const GLINT_LOBES_PEAK: f32 = 0.15915494;
 // Footprints are taken to be at least this wide, in texels: below it positions have no digits left.
 const GLINT_LOBES_LEAST_SIGMA: f32 = 1.0 / 4096.0;
 // Sum of shares below which f32 cannot tell what a footprint sees; the last level is the best that is known then.
@@ -20,8 +25,6 @@ const GLINT_LOBES_MAX_CORRELATION: f32 = 0.998;
 // Rows, and cells or boxes of a row, that a level is read by at most: more than any sound settings lead to.
 const GLINT_LOBES_MOST_STEPS: u32 = 16384u;
 
-const GLINT_LOBES_PACKED: u32 = 0u;
-const GLINT_LOBES_HALF: u32 = 1u;
 const GLINT_LOBES_SNORM16: u32 = 0u;
 const GLINT_LOBES_UNORM8: u32 = 1u;
 const GLINT_WRAP_REPEAT: u32 = 0u;
@@ -36,8 +39,6 @@ struct GlintLobesMap {
     wrap: u32,
     // 1: the nearest texel's normal; 0: bilinear.
     nearest: u32,
-    // GLINT_LOBES_PACKED or GLINT_LOBES_HALF.
-    storage: u32,
     // GLINT_LOBES_SNORM16 or GLINT_LOBES_UNORM8.
     normals: u32,
     lobes_per_cell: u32,
@@ -45,7 +46,6 @@ struct GlintLobesMap {
     step_texels: u32,
     // Stored levels.
     levels: u32,
-    unused: u32,
     // Smallest projected normal of a lobe, and their range.
     normal_low: vec2f,
     normal_extent: vec2f,
@@ -86,6 +86,8 @@ struct GlintLobesSettings {
     max_boxes: f32,
     // Footprints reach this far, in standard deviations.
     reach: f32,
+    // Part of the way from a stored level to the next over which both are read, above 0 to 1.
+    blend: f32,
 }
 
 // A footprint by its principal axes, in texels.
@@ -100,6 +102,9 @@ struct GlintLobesFrame {
 // A footprint and the projected normal at which its density is asked for.
 struct GlintLobesQuery {
     frame: GlintLobesFrame,
+    // The axes over their deviations: what turns an offset into standard deviations. Zero sees every place alike.
+    along: vec2f,
+    across: vec2f,
     s: vec2f,
     // Intrinsic roughness, a standard deviation of projected normals.
     roughness: f32,
@@ -112,12 +117,25 @@ struct GlintLobe {
     position: vec2f,
     // Mean projected normal.
     normal: vec2f,
-    // Factor of the covariance of positions: F F^T.
-    spread: mat2x2f,
+    // Factor of the covariance of positions F F^T, lower triangular: xx, yx, yy.
+    spread: vec3f,
     // ds/du per texel.
     jacobian: mat2x2f,
-    // Factor of the residual covariance of normals.
-    residual: mat2x2f,
+    // Residual covariance of normals: xx, xy, yy.
+    residual: vec3f,
+}
+
+// What a lobe gives to a footprint: a Gaussian over the disk of normals.
+struct GlintSeenLobe {
+    // Share of the footprint, to be divided by the sum of all shares.
+    share: f32,
+    // Share times density at the query's normal, but for the mass that lies inside the disk.
+    density: f32,
+    // Whether that mass may be less than 1.
+    cut: bool,
+    mean: vec2f,
+    // Covariance: xx, xy, yy.
+    covariance: vec3f,
 }
 
 // Two neighbouring levels: 0 boxes of `box_edge` texels, then the stored ones, then the whole map.
@@ -143,18 +161,17 @@ struct GlintLobesSlot {
 }
 
 fn glint_lobes_default_settings() -> GlintLobesSettings {
-    return GlintLobesSettings(0.6, 0.25, 0.375, 0.25, 32.0, 1024.0, 3.0);
+    return GlintLobesSettings(0.6, 0.25, 0.375, 0.25, 32.0, 1024.0, 3.0, 0.5);
 }
 
-// Error function: Taylor's series near 0, else Numerical Recipes' exponential of a polynomial (Press et al. 1992, section 6.2).
-// Error below 5e-7.
+// Few lobes, for pictures: about three cells of the map's lobes, or a dozen boxes, a footprint.
+fn glint_lobes_realtime_settings() -> GlintLobesSettings {
+    return GlintLobesSettings(0.2, 0.1, 0.16, 0.7, 6.0, 32.0, 2.0, 0.25);
+}
+
+// Error function by Numerical Recipes' exponential of a polynomial (Press et al. 1992, section 6.2); error below 4e-7.
 fn glint_erf(x: f32) -> f32 {
     let a = abs(x);
-    if a < 0.5 {
-        let z = x * x;
-        let series = 1.0 + z * (-0.33333333 + z * (0.1 + z * (-0.023809524 + z * (0.0046296296 - z * 0.00075757576))));
-        return x * 1.1283792 * series;
-    }
     let t = 1.0 / (1.0 + 0.5 * a);
     var p = -0.82215223 + t * 0.17087277;
     p = 1.48851587 + t * p;
@@ -191,9 +208,10 @@ fn glint_lobes_frame_in_map(map: GlintLobesMap, footprint: GlintFootprint) -> Gl
     );
 }
 
-// `d` along the major and the minor axis, in standard deviations.
-fn glint_lobes_whitened(frame: GlintLobesFrame, d: vec2f) -> vec2f {
-    return vec2f(dot(d, frame.axis) / frame.major, glint_cross2(frame.axis, d) / frame.minor);
+// A query from its parts.
+fn glint_lobes_query(frame: GlintLobesFrame, s: vec2f, roughness: f32) -> GlintLobesQuery {
+    let across = vec2f(-frame.axis.y, frame.axis.x) / frame.minor;
+    return GlintLobesQuery(frame, frame.axis / frame.major, across, s, roughness);
 }
 
 fn glint_lobes_variance_y(frame: GlintLobesFrame) -> f32 {
@@ -231,72 +249,25 @@ fn glint_lobes_span_x(frame: GlintLobesFrame, reach: f32, low: f32, high: f32) -
     );
 }
 
-// Factor F of a covariance F F^T.
-fn glint_lobes_factor(sigmas: vec2f, correlation: f32) -> mat2x2f {
+// Lower triangular factor F of a covariance F F^T: xx, yx, yy.
+fn glint_lobes_factor(sigmas: vec2f, correlation: f32) -> vec3f {
     let rest = sqrt(max(1.0 - correlation * correlation, 0.0));
-    return mat2x2f(vec2f(sigmas.x, correlation * sigmas.y), vec2f(0.0, rest * sigmas.y));
+    return vec3f(sigmas.x, correlation * sigmas.y, rest * sigmas.y);
 }
 
-// The lobe of a 16 byte record.
-fn glint_lobes_decode_packed(map: GlintLobesMap, level: GlintLobesLevel, record: vec4u) -> GlintLobe {
-    let slope = unpack4x8snorm(record.x);
-    let jacobian = level.jacobian_scale * slope * abs(slope);
-    let normal = vec2f(f32(record.y & 0xfffu), f32((record.y >> 12u) & 0xfffu)) / 4095.0;
-    let root = f32(record.y >> 24u) / 255.0;
-    let position = unpack4x8unorm(record.z).xy;
-    let correlation = unpack4x8snorm(record.z).zw * GLINT_LOBES_MAX_CORRELATION;
-    let codes = unpack4x8unorm(record.w);
-    let sigmas = level.position_sigma * exp2(codes.xy * level.position_log_ratio);
-    let place = (codes.zw * 255.0 - 1.0) / 254.0;
-    let some = codes.zw > vec2f(0.0);
-    let residual = select(vec2f(0.0), level.residual_sigma * exp2(place * level.residual_log_ratio), some);
-    return GlintLobe(
-        level.weight_scale * root * root,
-        position * level.extent,
-        map.normal_low + normal * map.normal_extent,
-        glint_lobes_factor(sigmas, correlation.x),
-        mat2x2f(jacobian.xy, jacobian.zw),
-        glint_lobes_factor(residual, correlation.y),
-    );
+// Covariance of two deviations: xx, xy, yy.
+fn glint_lobes_covariance(sigmas: vec2f, correlation: f32) -> vec3f {
+    return vec3f(sigmas.x * sigmas.x, correlation * sigmas.x * sigmas.y, sigmas.y * sigmas.y);
 }
 
-// The lobe of a 32 byte record.
-fn glint_lobes_decode_half(map: GlintLobesMap, level: GlintLobesLevel, low: vec4u, high: vec4u) -> GlintLobe {
-    let correlation = unpack2x16snorm(high.z) * GLINT_LOBES_MAX_CORRELATION;
-    return GlintLobe(
-        level.weight_scale * unpack2x16float(high.w).x,
-        unpack2x16unorm(low.w) * level.extent,
-        map.normal_low + unpack2x16unorm(low.z) * map.normal_extent,
-        glint_lobes_factor(unpack2x16float(high.x), correlation.x),
-        mat2x2f(unpack2x16float(low.x), unpack2x16float(low.y)),
-        glint_lobes_factor(unpack2x16float(high.y), correlation.y),
-    );
-}
-
-// Four words of the section LOBE.
-fn glint_lobes_words(first: u32) -> vec4u {
-    return vec4u(
-        glint_lobes_word(first), glint_lobes_word(first + 1u), glint_lobes_word(first + 2u), glint_lobes_word(first + 3u),
-    );
-}
-
-// A lobe by its index among all; `level` is its level.
-fn glint_lobes_lobe(map: GlintLobesMap, level: GlintLobesLevel, index: u32) -> GlintLobe {
-    if map.storage == GLINT_LOBES_PACKED {
-        return glint_lobes_decode_packed(map, level, glint_lobes_words(4u * index));
-    }
-    return glint_lobes_decode_half(map, level, glint_lobes_words(8u * index), glint_lobes_words(8u * index + 4u));
-}
-
-// Mass of a Gaussian inside the disk: 1 unless it is wide or near the rim, else a sum over strips across the line from the
-// disk's middle through its mean, each strip's chord by its conditional Gaussian.
-fn glint_lobes_inside_disk(mean: vec2f, xx: f32, xy: f32, yy: f32) -> f32 {
+// Mass inside the disk of a Gaussian that is wide or near the rim: a sum over strips across the line from the disk's middle
+// through its mean, each strip's chord by its conditional Gaussian.
+fn glint_lobes_inside_disk(mean: vec2f, covariance: vec3f) -> f32 {
     const STRIPS: i32 = 12;
+    let xx = covariance.x;
+    let xy = covariance.y;
+    let yy = covariance.z;
     let radius = length(mean);
-    let to_rim = 1.0 - radius;
-    if to_rim > 0.0 && to_rim * to_rim > 25.0 * (xx + yy) {
-        return 1.0;
-    }
     var out = vec2f(1.0, 0.0);
     if radius > 0.0 {
         out = mean / radius;
@@ -322,77 +293,55 @@ fn glint_lobes_inside_disk(mean: vec2f, xx: f32, xy: f32, yy: f32) -> f32 {
     return max(0.25 * sum, 1.0e-3);
 }
 
-// Share of a lobe's Gaussian over normals times its density at the query's normal, and the share. Mass is only looked for
-// where there is a density.
-fn glint_lobes_gaussian(query: GlintLobesQuery, share: f32, mean: vec2f, xx: f32, xy: f32, yy: f32) -> vec2f {
-    // Rounding may take the determinant of a long thin Gaussian below what it can be.
-    let det = max(xx * yy - xy * xy, query.roughness * query.roughness * max(xx, yy));
-    let d = query.s - mean;
-    let q = (yy * d.x * d.x - 2.0 * xy * d.x * d.y + xx * d.y * d.y) / det;
-    if !(q <= GLINT_LOBES_CUT) {
-        return vec2f(0.0, share);
-    }
-    let peak = 1.0 / (2.0 * GLINT_LOBES_PI * sqrt(det) * glint_lobes_inside_disk(mean, xx, xy, yy));
-    return vec2f(share * peak * exp(-0.5 * q), share);
-}
-
-// What `lobe` gives to a footprint whose centre lies `d` from the lobe's position (Eq. 6): density and share.
-fn glint_lobes_seen(query: GlintLobesQuery, lobe: GlintLobe, d: vec2f) -> vec2f {
+// What `lobe` gives to a footprint whose centre lies `d` from the lobe's position (Eq. 6).
+fn glint_lobes_seen(query: GlintLobesQuery, lobe: GlintLobe, d: vec2f) -> GlintSeenLobe {
     // Columns of the spread's factor, in standard deviations of the footprint, and what they are in normals.
-    let f = glint_lobes_whitened(query.frame, lobe.spread[0]);
-    let g = glint_lobes_whitened(query.frame, lobe.spread[1]);
-    let slopes = lobe.jacobian * lobe.spread;
-    let w = glint_lobes_whitened(query.frame, d);
-    // M = I + F^T S^-1 F has rows (f, g) . columns; det M and adj M are sums of squares and outer products.
-    let p = vec2f(f.x, g.x);
-    let q = vec2f(f.y, g.y);
+    let p = vec2f(
+        query.along.x * lobe.spread.x + query.along.y * lobe.spread.y, query.along.y * lobe.spread.z,
+    );
+    let q = vec2f(
+        query.across.x * lobe.spread.x + query.across.y * lobe.spread.y, query.across.y * lobe.spread.z,
+    );
+    let a = lobe.jacobian[0] * lobe.spread.x + lobe.jacobian[1] * lobe.spread.y;
+    let b = lobe.jacobian[1] * lobe.spread.z;
+    let w = vec2f(dot(query.along, d), dot(query.across, d));
+    // M = I + F^T S^-1 F is I + p p^T + q q^T; det M and adj M are sums of squares and outer products.
     let area = glint_cross2(p, q);
     let det = 1.0 + dot(p, p) + dot(q, q) + area * area;
-    let across = vec2f(glint_cross2(f, w), glint_cross2(g, w));
-    let distance = (dot(w, w) + dot(across, across)) / det;
-    let toward = p * w.x + q * w.y + (vec2f(-p.y, p.x) * w.y - vec2f(-q.y, q.x) * w.x) * area;
-    let u = slopes * vec2f(-p.y, p.x);
-    let v = slopes * vec2f(-q.y, q.x);
-    let a = slopes[0];
-    let b = slopes[1];
-    let r0 = lobe.residual[0];
-    let r1 = lobe.residual[1];
+    let part = 1.0 / det;
+    let across = p * w.y - q * w.x;
+    let distance = (dot(w, w) + dot(across, across)) * part;
+    let toward = (p * w.x + q * w.y + vec2f(-across.y, across.x) * area) * part;
+    let u = b * p.x - a * p.y;
+    let v = b * q.x - a * q.y;
     let intrinsic = query.roughness * query.roughness;
-    let xx = intrinsic + r0.x * r0.x + r1.x * r1.x + (a.x * a.x + b.x * b.x + u.x * u.x + v.x * v.x) / det;
-    let xy = r0.x * r0.y + r1.x * r1.y + (a.x * a.y + b.x * b.y + u.x * u.y + v.x * v.y) / det;
-    let yy = intrinsic + r0.y * r0.y + r1.y * r1.y + (a.y * a.y + b.y * b.y + u.y * u.y + v.y * v.y) / det;
-    let share = lobe.weight * exp(-0.5 * distance) / sqrt(det);
-    return glint_lobes_gaussian(query, share, lobe.normal + slopes * toward / det, xx, xy, yy);
-}
-
-// What `lobe` gives to a footprint that sees every place alike: all of it.
-fn glint_lobes_seen_whole(query: GlintLobesQuery, lobe: GlintLobe) -> vec2f {
-    let slopes = lobe.jacobian * lobe.spread;
-    let a = slopes[0];
-    let b = slopes[1];
-    let r0 = lobe.residual[0];
-    let r1 = lobe.residual[1];
-    let intrinsic = query.roughness * query.roughness;
-    return glint_lobes_gaussian(
-        query,
-        lobe.weight,
-        lobe.normal,
-        intrinsic + r0.x * r0.x + r1.x * r1.x + a.x * a.x + b.x * b.x,
-        r0.x * r0.y + r1.x * r1.y + a.x * a.y + b.x * b.y,
-        intrinsic + r0.y * r0.y + r1.y * r1.y + a.y * a.y + b.y * b.y,
-    );
+    let xx = intrinsic + lobe.residual.x + (a.x * a.x + b.x * b.x + u.x * u.x + v.x * v.x) * part;
+    let xy = lobe.residual.y + (a.x * a.y + b.x * b.y + u.x * u.y + v.x * v.y) * part;
+    let yy = intrinsic + lobe.residual.z + (a.y * a.y + b.y * b.y + u.y * u.y + v.y * v.y) * part;
+    let mean = lobe.normal + a * toward.x + b * toward.y;
+    let share = lobe.weight * exp(-0.5 * distance) * sqrt(part);
+    // Rounding may take the determinant of a long thin Gaussian below what it can be.
+    let volume = max(xx * yy - xy * xy, intrinsic * max(xx, yy));
+    let e = query.s - mean;
+    let far = (yy * e.x * e.x - 2.0 * xy * e.x * e.y + xx * e.y * e.y) / volume;
+    let near = far <= GLINT_LOBES_CUT;
+    let density = select(0.0, share * inverseSqrt(volume) * exp(-0.5 * far) * GLINT_LOBES_PEAK, near);
+    let to_rim = 1.0 - length(mean);
+    let inside = to_rim > 0.0 && to_rim * to_rim > 25.0 * (xx + yy);
+    return GlintSeenLobe(share, density, near && !inside, mean, vec3f(xx, xy, yy));
 }
 
 // Lobe of a box of the filtered map, `size` texels wide and high: exact moments.
 fn glint_lobes_box_lobe(place: GlintLobesPatch, size: vec2f) -> GlintLobe {
     const PER_EDGE: f32 = 0.28867513; // 1 / sqrt 12
+    let rest = place.twist * (size.x * size.y / 12.0);
     return GlintLobe(
         size.x * size.y,
         vec2f(0.0),
         place.normal,
-        mat2x2f(vec2f(size.x * PER_EDGE, 0.0), vec2f(0.0, size.y * PER_EDGE)),
+        vec3f(size.x * PER_EDGE, 0.0, size.y * PER_EDGE),
         place.jacobian,
-        mat2x2f(place.twist * (size.x * size.y / 12.0), vec2f(0.0)),
+        vec3f(rest.x * rest.x, rest.x * rest.y, rest.y * rest.y),
     );
 }
 
@@ -481,8 +430,8 @@ fn glint_lobes_lod(map: GlintLobesMap, frame: GlintLobesFrame, settings: GlintLo
     if finer == 0.0 {
         box_edge = glint_lobes_box_edge(map, frame, settings);
     } else {
-        // The finer of two stored levels serves alone for half the way: nearer to the map, and only one level is read.
-        fraction = max(2.0 * fraction - 1.0, 0.0);
+        // The finer of two stored levels serves alone at first: nearer to the map, and only one level is read.
+        fraction = max(1.0 - (1.0 - fraction) / settings.blend, 0.0);
     }
     return GlintLobesLod(u32(finer), fraction, box_edge);
 }
@@ -500,7 +449,8 @@ fn glint_lobes_next_slot(slot: GlintLobesSlot, count: u32) -> GlintLobesSlot {
     return GlintLobesSlot(slot.index + 1u, slot.copy);
 }
 
-// Density and share of the lobes of a cell whose first lobe is `first` and whose corner lies at `corner`.
+// Density and share of the lobes of a cell whose first lobe is `first` and whose corner lies at `corner`. The mass inside the
+// disk takes long and few lobes need it: it stands outside the loop over the others, which ends where one does.
 fn glint_lobes_cell(
     map: GlintLobesMap,
     query: GlintLobesQuery,
@@ -509,33 +459,42 @@ fn glint_lobes_cell(
     corner: vec2f,
 ) -> vec2f {
     var sum = vec2f(0.0);
-    for (var k = 0u; k < map.lobes_per_cell; k++) {
-        let lobe = glint_lobes_lobe(map, level, first + k);
-        if lobe.weight > 0.0 {
-            sum += glint_lobes_seen(query, lobe, query.frame.mean - corner - lobe.position);
+    var k = 0u;
+    while k < map.lobes_per_cell {
+        var seen = GlintSeenLobe();
+        while k < map.lobes_per_cell && !seen.cut {
+            let lobe = glint_lobes_lobe(map, level, first + k);
+            seen = glint_lobes_seen(query, lobe, query.frame.mean - corner - lobe.position);
+            sum += vec2f(select(seen.density, 0.0, seen.cut), seen.share);
+            k += 1u;
+        }
+        if seen.cut {
+            sum.x += seen.density / glint_lobes_inside_disk(seen.mean, seen.covariance);
         }
     }
     return sum;
 }
 
-// Density and share of the lobes of the last level, every place alike.
-fn glint_lobes_whole(map: GlintLobesMap, query: GlintLobesQuery) -> vec2f {
-    let top = glint_lobes_level(map.levels - 1u);
-    var sum = vec2f(0.0);
-    for (var k = 0u; k < map.lobes_per_cell; k++) {
-        let lobe = glint_lobes_lobe(map, top, top.first_lobe + k);
-        if lobe.weight > 0.0 {
-            sum += glint_lobes_seen_whole(query, lobe);
-        }
-    }
-    return sum;
-}
-
-// Density and share of a stored level's cells under the footprint on the repeated map.
-fn glint_lobes_cells(map: GlintLobesMap, query: GlintLobesQuery, level: GlintLobesLevel, reach: f32) -> vec2f {
-    let frame = query.frame;
+// Density and share of a stored level's cells under the footprint on the repeated map. `whole` sees the first cell, as a
+// footprint does that sees every place alike.
+fn glint_lobes_cells(
+    map: GlintLobesMap,
+    given: GlintLobesQuery,
+    level: GlintLobesLevel,
+    given_reach: f32,
+    whole: bool,
+) -> vec2f {
     let size = vec2f(f32(map.width), f32(map.height));
     let edge = f32(level.cell_texels);
+    var query = given;
+    var reach = given_reach;
+    if whole {
+        query.frame.mean = 0.5 * min(vec2f(edge), size);
+        query.along = vec2f(0.0);
+        query.across = vec2f(0.0);
+        reach = 0.0;
+    }
+    let frame = query.frame;
     let top = glint_lobes_reach_y(frame, reach);
     var sum = vec2f(0.0);
     var row = glint_lobes_first_slot(frame.mean.y - top, size.y, edge, level.cells_y);
@@ -582,12 +541,21 @@ fn glint_lobes_boxes(map: GlintLobesMap, query: GlintLobesQuery, edge: f32, reac
             let copy_y = floor(y / size.y) * size.y;
             let begin = i32(floor((span.x - origin) / edge));
             let end = min(i32(floor((span.y - origin) / edge)), begin + i32(GLINT_LOBES_MOST_STEPS));
-            for (var i = begin; i <= end; i++) {
-                let x = origin + (f32(i) + 0.5) * edge;
-                let copy = vec2f(floor(x / size.x) * size.x, copy_y);
-                let centre = vec2f(x, y) - copy;
-                let lobe = glint_lobes_box_lobe(glint_lobes_surface_at(map, centre), vec2f(edge));
-                sum += glint_lobes_seen(query, lobe, frame.mean - centre - copy);
+            var i = begin;
+            while i <= end {
+                var seen = GlintSeenLobe();
+                while i <= end && !seen.cut {
+                    let x = origin + (f32(i) + 0.5) * edge;
+                    let copy = vec2f(floor(x / size.x) * size.x, copy_y);
+                    let centre = vec2f(x, y) - copy;
+                    let lobe = glint_lobes_box_lobe(glint_lobes_surface_at(map, centre), vec2f(edge));
+                    seen = glint_lobes_seen(query, lobe, frame.mean - centre - copy);
+                    sum += vec2f(select(seen.density, 0.0, seen.cut), seen.share);
+                    i += 1;
+                }
+                if seen.cut {
+                    sum.x += seen.density / glint_lobes_inside_disk(seen.mean, seen.covariance);
+                }
             }
         }
     }
@@ -605,10 +573,8 @@ fn glint_lobes_level_sum(
     if level == 0u {
         return glint_lobes_boxes(map, query, box_edge, reach);
     }
-    if level <= map.levels {
-        return glint_lobes_cells(map, query, glint_lobes_level(level - 1u), reach);
-    }
-    return glint_lobes_whole(map, query);
+    let stored = glint_lobes_level(min(level, map.levels) - 1u);
+    return glint_lobes_cells(map, query, stored, reach, level > map.levels);
 }
 
 // P-NDF at the query's normal of a footprint on the repeated map: density over the disk, 0 outside it. The frame is that of
@@ -618,16 +584,20 @@ fn glint_lobes_p_ndf(map: GlintLobesMap, query: GlintLobesQuery, settings: Glint
         return 0.0;
     }
     let lod = glint_lobes_lod(map, query.frame, settings);
+    let whole = map.levels + 1u;
+    let last = select(lod.finer, lod.finer + 1u, lod.fraction > 0.0);
     var density = 0.0;
-    for (var k = 0u; k < 2u; k++) {
-        let weight = select(1.0 - lod.fraction, lod.fraction, k == 1u);
-        if weight > 0.0 {
-            var sum = glint_lobes_level_sum(map, query, lod.finer + k, lod.box_edge, settings.reach);
-            if !(sum.y >= GLINT_LOBES_LEAST_SHARE) {
-                sum = glint_lobes_whole(map, query);
-            }
-            density += weight * sum.x / sum.y;
+    var at = select(lod.finer, last, lod.fraction >= 1.0);
+    var level = at;
+    while at <= last {
+        let sum = glint_lobes_level_sum(map, query, level, lod.box_edge, settings.reach);
+        if !(sum.y >= GLINT_LOBES_LEAST_SHARE) && level < whole {
+            level = whole;
+            continue;
         }
+        density += select(1.0 - lod.fraction, lod.fraction, at > lod.finer) * sum.x / max(sum.y, GLINT_LOBES_LEAST_SHARE);
+        at += 1u;
+        level = at;
     }
     return density;
 }

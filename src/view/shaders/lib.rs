@@ -39,15 +39,25 @@ modules! {
     "bind_dictionary" needs ["glint_dictionary"];
     "query_dictionary" needs ["bind_dictionary"];
     "glint_lobes" needs ["glint_footprint"];
-    "glint_synthesis" needs ["glint_hash"];
-    "bind_lobes" needs ["glint_lobes", "glint_synthesis"];
+    "glint_lobes_packed" needs ["glint_lobes"];
+    "glint_lobes_half" needs ["glint_lobes"];
+    "glint_synthesis_paths" needs [];
+    "glint_synthesis" needs ["glint_synthesis_paths"];
+    "glint_synthesis_grid" needs ["glint_synthesis"];
+    "glint_synthesis_tiles" needs ["glint_synthesis", "glint_hash"];
+    "bind_lobes" needs ["glint_lobes", "glint_synthesis_paths"];
     "query_lobes" needs ["bind_lobes"];
     "glint_surface" needs ["glint_lobes", "glint_synthesis"];
+    "glint_surface_seams" needs ["glint_surface"];
+    "glint_surface_blocks" needs ["glint_surface"];
     "query_surface" needs ["bind_lobes", "glint_surface"];
     "view_scene" needs [];
     "view_surface" needs ["view_scene", "glint_hash"];
     "shade_smooth" needs ["view_scene", "glint_brdf"];
     "shade_dictionary" needs ["view_scene", "glint_brdf", "bind_dictionary"];
+    "shade_normals" needs ["view_scene", "glint_brdf"];
+    "shade_lobes" needs ["shade_normals", "bind_lobes"];
+    "shade_surface" needs ["shade_normals", "bind_lobes", "glint_surface"];
     "shade_rect_points" needs ["view_scene"];
 }
 

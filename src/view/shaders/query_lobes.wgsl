@@ -9,7 +9,6 @@ struct LobesQuery {
     yy: f32,
     roughness: f32,
     settings: GlintLobesSettings,
-    unused: f32,
 }
 
 @group(0) @binding(0) var<storage, read> queries: array<LobesQuery>;
@@ -22,5 +21,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let q = queries[id.x];
     let frame = glint_lobes_frame_in_map(lobes.map, GlintFootprint(q.mean, q.xx, q.xy, q.yy));
-    answers[id.x] = glint_lobes_p_ndf(lobes.map, GlintLobesQuery(frame, q.s, q.roughness), q.settings);
+    answers[id.x] = glint_lobes_p_ndf(lobes.map, glint_lobes_query(frame, q.s, q.roughness), q.settings);
 }

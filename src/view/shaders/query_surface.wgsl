@@ -9,7 +9,6 @@ struct SurfaceQuery {
     yy: f32,
     roughness: f32,
     settings: GlintSurfaceSettings,
-    unused: f32,
 }
 
 @group(0) @binding(0) var<storage, read> queries: array<SurfaceQuery>;

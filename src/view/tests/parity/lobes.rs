@@ -2,7 +2,7 @@
 
 use crate::support::{QUERIES, compare, gpu, random};
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec2, Vec2};
+use glam::{DVec2, Vec2, Vec3};
 use glint_bake_core::footprint::Footprint;
 use glint_bake_core::lobes::options::NormalsChoice;
 use glint_bake_core::lobes::query::QuerySettings;
@@ -12,7 +12,7 @@ use glint_bake_core::progress::Silent;
 use glint_formats::lobes::{Filter, LobeStorage};
 use glint_formats::ndf_maps::Wrap;
 use glint_view::gpu::{Gpu, answer};
-use glint_view::methods::lobes::upload;
+use glint_view::methods::lobes::{modules, upload};
 use rand::{Rng, RngExt};
 
 /// `GlintLobesSettings` of glint_lobes.wgsl.
@@ -26,12 +26,14 @@ pub struct Settings {
     max_cells: f32,
     max_boxes: f32,
     reach: f32,
+    blend: f32,
 }
 
 impl Settings {
     pub fn of(settings: &QuerySettings) -> Settings {
-        let QuerySettings { cell_sigmas, boxes_until, cells_from, box_sigmas, max_cells, max_boxes, reach } = *settings;
-        Settings { cell_sigmas, boxes_until, cells_from, box_sigmas, max_cells, max_boxes, reach }
+        let QuerySettings { cell_sigmas, boxes_until, cells_from, box_sigmas, max_cells, max_boxes, reach, blend } =
+            *settings;
+        Settings { cell_sigmas, boxes_until, cells_from, box_sigmas, max_cells, max_boxes, reach, blend }
     }
 }
 
@@ -60,7 +62,6 @@ impl Place {
 struct Query {
     place: Place,
     settings: Settings,
-    unused: f32,
 }
 
 /// A number whose logarithm is uniform.
@@ -99,8 +100,10 @@ pub fn place(rng: &mut impl Rng, from: f32, shown: impl Fn(Vec2) -> Vec2) -> Pla
 
 /// Settings as they are by default, or any.
 pub fn settings(rng: &mut impl Rng) -> QuerySettings {
-    if rng.random_range(0..4) == 0 {
-        return QuerySettings::default();
+    match rng.random_range(0..4) {
+        0 => return QuerySettings::default(),
+        1 => return QuerySettings::realtime(),
+        _ => {}
     }
     let boxes_until = log_uniform(rng, 0.05, 0.3);
     QuerySettings {
@@ -111,6 +114,7 @@ pub fn settings(rng: &mut impl Rng) -> QuerySettings {
         max_cells: log_uniform(rng, 3.0, 40.0),
         max_boxes: log_uniform(rng, 16.0, 800.0),
         reach: 2.0 + 1.5 * rng.random::<f32>(),
+        blend: log_uniform(rng, 0.05, 1.0),
     }
 }
 
@@ -145,9 +149,9 @@ fn answers(gpu: &Gpu, lobes: &BakedLobes, rng: &mut impl Rng, count: usize) -> V
         let place = place(rng, 3000.0, shown);
         let settings = settings(rng);
         expected.push(lobes.p_ndf(&place.footprint(), place.s, place.roughness, &settings));
-        queries.push(Query { place, settings: Settings::of(&settings), unused: 0.0 });
+        queries.push(Query { place, settings: Settings::of(&settings) });
     }
-    let source = glint_shaders::compose(&["query_lobes"]);
+    let source = glint_shaders::compose(&["query_lobes", modules(params)[0]]);
     let found: Vec<f32> = answer(gpu, "lobes", &source, &[&upload(gpu, lobes)], &queries).unwrap();
     let unit = |i: usize| unit(params.normal_extent, queries[i].place.roughness);
     found.iter().zip(&expected).enumerate().map(|(i, (a, e))| (a * unit(i), e * unit(i))).collect()
@@ -178,4 +182,66 @@ fn the_density_of_the_shader_is_that_of_the_cpu() {
         }
     }
     compare("lobes", pairs.into_iter());
+}
+
+#[test]
+fn a_real_map_gives_the_same_on_both() {
+    let Some(gpu) = gpu() else { return };
+    let folder = std::env::var_os("GLINT_DATA").map_or_else(
+        || std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
+        std::path::PathBuf::from,
+    );
+    let path = folder.join("normals/carpaint_flakes_khronos_128.png");
+    if !path.is_file() {
+        eprintln!("skipped: {} is not there; set GLINT_DATA", path.display());
+        return;
+    }
+    let image = image::open(&path).unwrap().to_rgb8();
+    let normal = |rgb: &image::Rgb<u8>| (Vec3::from_array(rgb.0.map(f32::from)) / 127.5 - 1.0).normalize().truncate();
+    let projected = image.pixels().map(|rgb| normal(rgb).into()).collect();
+    let map = NormalMap { width: image.width(), height: image.height(), wrap: Wrap::Repeat, projected };
+    let options = LobesOptions { lobes_per_cell: 16, footprints: 0, ..LobesOptions::default() };
+    let lobes = bake(&map, &options, &Silent).unwrap();
+    compare("lobes, flakes", answers(gpu, &lobes, &mut random(8), QUERIES).into_iter());
+}
+
+#[test]
+fn hard_maps_and_footprints_have_finite_densities() {
+    let Some(gpu) = gpu() else { return };
+    let map = |width: u32, height: u32, wrap, s: &dyn Fn(u32) -> [f32; 2]| NormalMap {
+        width,
+        height,
+        wrap,
+        projected: (0..width * height).map(s).collect(),
+    };
+    let steep = |at: u32| if at.is_multiple_of(3) { [0.999, 0.0] } else { [-0.7, 0.7] };
+    let maps = [
+        map(1, 1, Wrap::Repeat, &|_| [0.0; 2]),
+        map(16, 16, Wrap::Clamp, &|_| [0.3, -0.2]),
+        map(33, 1, Wrap::Repeat, &steep),
+        map(20, 20, Wrap::Clamp, &steep),
+    ];
+    for map in &maps {
+        for (filter, roughness) in [(Filter::Linear, 1e-3), (Filter::Nearest, 1.0)] {
+            let options = LobesOptions { filter, roughness, footprints: 0, ..LobesOptions::default() };
+            let lobes = bake(map, &options, &Silent).unwrap();
+            let mut queries = Vec::new();
+            for covariance in [[0.0; 3], [1e16, 0.0, 1e16], [1e16, 0.0, 0.0], [1e8, 9.9e7, 1e8], [1e-12, 0.0, 1e-4]] {
+                for mean in [Vec2::ZERO, Vec2::splat(-1e6), Vec2::splat(3e9)] {
+                    for s in [Vec2::ZERO, Vec2::X, Vec2::new(0.3, -0.2), Vec2::splat(2.0)] {
+                        for settings in [QuerySettings::default(), QuerySettings::realtime()] {
+                            let place = Place { mean, s, covariance, roughness: roughness as f32 };
+                            queries.push(Query { place, settings: Settings::of(&settings) });
+                        }
+                    }
+                }
+            }
+            let source = glint_shaders::compose(&["query_lobes", modules(&lobes.params)[0]]);
+            let found: Vec<f32> = answer(gpu, "lobes", &source, &[&upload(gpu, &lobes)], &queries).unwrap();
+            for (density, query) in found.iter().zip(&queries) {
+                assert!(density.is_finite() && *density >= 0.0, "{density} at {query:?}");
+                assert!(query.place.s.length() <= 1.0 || *density == 0.0, "{density} outside the disk");
+            }
+        }
+    }
 }

@@ -12,7 +12,7 @@ use glint_bake_core::synthesis::{SynthesisOptions, Target};
 use glint_formats::lobes::{Filter, LobeStorage};
 use glint_formats::ndf_maps::Wrap;
 use glint_view::gpu::{Gpu, answer};
-use glint_view::methods::lobes::upload_surface;
+use glint_view::methods::lobes::{surface_modules, upload_surface};
 use rand::{Rng, RngExt};
 
 /// Most lobes and boxes that a query may see: Mesa's software adapter ends a program after 65 535 steps of all its loops and eight
@@ -29,14 +29,13 @@ struct Query {
     owned_sigma: f32,
     box_range: f32,
     halves_until: f32,
-    unused: f32,
 }
 
-fn surface_settings(rng: &mut impl Rng) -> SurfaceSettings {
+fn surface_settings(rng: &mut impl Rng, whole_blocks: bool) -> SurfaceSettings {
     let query = settings(rng);
     let query = QuerySettings { max_cells: 0.5 * query.max_cells, max_boxes: 0.5 * query.max_boxes, ..query };
     if rng.random_range(0..4) == 0 {
-        return SurfaceSettings { query, ..SurfaceSettings::default() };
+        return SurfaceSettings { query, whole_blocks, ..SurfaceSettings::default() };
     }
     SurfaceSettings {
         query,
@@ -44,10 +43,11 @@ fn surface_settings(rng: &mut impl Rng) -> SurfaceSettings {
         owned_sigma: log_uniform(rng, 2.0, 30.0),
         box_range: log_uniform(rng, 0.3, 4.0),
         halves_until: log_uniform(rng, 1.0, 20.0),
+        whole_blocks,
     }
 }
 
-fn answers(gpu: &Gpu, surface: &Surface, rng: &mut impl Rng, count: usize) -> Vec<(f32, f32)> {
+fn answers(gpu: &Gpu, surface: &Surface, rng: &mut impl Rng, whole_blocks: bool, count: usize) -> Vec<(f32, f32)> {
     let shown = |u: glam::Vec2| {
         let at = u.floor().as_ivec2();
         let (x, y) = surface.synthesis.source_texel(at.x, at.y);
@@ -59,8 +59,8 @@ fn answers(gpu: &Gpu, surface: &Surface, rng: &mut impl Rng, count: usize) -> Ve
     while queries.len() < count {
         drawn += 1;
         let place = place(rng, 3000.0, shown);
-        let settings = surface_settings(rng);
-        let SurfaceSettings { query, owned_from, owned_sigma, box_range, halves_until } = settings;
+        let settings = surface_settings(rng, whole_blocks);
+        let SurfaceSettings { query, owned_from, owned_sigma, box_range, halves_until, .. } = settings;
         let gathered = surface.gather(&place.footprint(), place.roughness, &settings);
         if gathered.lobes.len() > MOST_LOBES {
             continue;
@@ -73,11 +73,12 @@ fn answers(gpu: &Gpu, surface: &Surface, rng: &mut impl Rng, count: usize) -> Ve
             owned_sigma,
             box_range,
             halves_until,
-            unused: 0.0,
         });
     }
     println!("{count} queries of {drawn} are of no more than {MOST_LOBES} lobes");
-    let source = glint_shaders::compose(&["query_surface"]);
+    let mut modules = vec!["query_surface"];
+    modules.extend(surface_modules(surface, whole_blocks));
+    let source = glint_shaders::compose(&modules);
     let found: Vec<f32> = answer(gpu, "surface", &source, &[&upload_surface(gpu, surface)], &queries).unwrap();
     let unit = |i: usize| unit(surface.lobes.params.normal_extent, queries[i].place.roughness);
     found.iter().zip(&expected).enumerate().map(|(i, (a, e))| (a * unit(i), e * unit(i))).collect()
@@ -102,7 +103,9 @@ fn the_density_of_the_shader_is_that_of_the_cpu() {
             LobesOptions { filter, storage, normals, lobes_per_cell: 8, footprints: 0, ..LobesOptions::default() };
         let options = SynthesisOptions { target, patch, overlap, alignment: 16, ..SynthesisOptions::default() };
         let surface = bake(&waves(112, 128, wrap), &lobes, &options, &Silent).unwrap();
-        pairs.extend(answers(gpu, &surface, rng, QUERIES / 4));
+        for whole_blocks in [false, true] {
+            pairs.extend(answers(gpu, &surface, rng, whole_blocks, QUERIES / 8));
+        }
     }
     compare("surface", pairs.into_iter());
 }
