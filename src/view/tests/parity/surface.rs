@@ -1,6 +1,6 @@
 //! P-NDFs of a surface synthesised by patches.
 
-use crate::lobes::{Place, Settings, log_uniform, place, settings, unit, waves};
+use crate::lobes::{MOST_LOBES, Place, Settings, log_uniform, place, settings, unit, waves};
 use crate::support::{QUERIES, compare, gpu, random};
 use bytemuck::{Pod, Zeroable};
 use glint_bake_core::lobes::LobesOptions;
@@ -14,10 +14,6 @@ use glint_formats::ndf_maps::Wrap;
 use glint_view::gpu::{Gpu, answer};
 use glint_view::methods::lobes::{surface_modules, upload_surface};
 use rand::{Rng, RngExt};
-
-/// Most lobes and boxes that a query may see: Mesa's software adapter ends a program after 65 535 steps of all its loops and eight
-/// queries together.
-const MOST_LOBES: usize = 800;
 
 /// `SurfaceQuery` of query_surface.wgsl.
 #[repr(C)]
