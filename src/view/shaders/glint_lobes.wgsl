@@ -166,7 +166,7 @@ fn glint_lobes_default_settings() -> GlintLobesSettings {
 
 // Few lobes, for pictures: about three cells of the map's lobes, or a dozen boxes, a footprint.
 fn glint_lobes_realtime_settings() -> GlintLobesSettings {
-    return GlintLobesSettings(0.2, 0.1, 0.16, 0.7, 6.0, 32.0, 2.0, 0.25);
+    return GlintLobesSettings(0.18, 0.1, 0.15, 0.7, 5.0, 32.0, 1.8, 0.15);
 }
 
 // Error function by Numerical Recipes' exponential of a polynomial (Press et al. 1992, section 6.2); error below 4e-7.
