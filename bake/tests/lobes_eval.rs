@@ -205,3 +205,24 @@ fn the_same_bytes_at_any_number_of_threads_and_others_for_another_seed() {
     }
     assert!(bytes(1, Merge::KMeans, 1).lobes != bytes(1, Merge::KMeans, 2).lobes);
 }
+
+#[test]
+fn settings_for_pictures_see_few_lobes_and_little_else() {
+    let map = waves(128);
+    let baked = bake(&map, &options(), &Silent).unwrap();
+    let reference = Reference::new(&map, Filter::Linear, ROUGHNESS);
+    let settings = [QuerySettings::default(), QuerySettings::realtime()];
+    for sigma in [0.7, 2.0, 5.0, 11.0] {
+        let footprints = sweep::footprints(sigma, 1.0, DVec2::splat(128.0), 6, 3);
+        let bakes = settings.map(|settings| (&baked, Measured::Chosen(settings)));
+        let errors = footprint_errors(&reference, &bakes, &footprints, 6);
+        let (default, few) = (errors[0], errors[1]);
+        println!(
+            "σ {sigma}: E₁ {:.3} and {:.3}, lobes {} and {}",
+            default.e1.mean, few.e1.mean, default.lobes, few.lobes
+        );
+        assert!(few.e1.mean < 0.2, "σ {sigma}: {}", few.e1.mean);
+        // Nine cells of two levels, of which the coarser is read over a part of the way.
+        assert!(few.most_lobes <= 18 * 32 && few.lobes < 0.7 * default.lobes, "σ {sigma}: {} lobes", few.lobes);
+    }
+}

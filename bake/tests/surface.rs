@@ -220,3 +220,22 @@ fn what_does_not_fit_is_refused() {
     assert!(refused(&lobes(), &odd).contains("--alignment"));
     assert!(refused(&lobes(), &SynthesisOptions { patch: 256, ..synthesis(GRID) }).contains("--patch"));
 }
+
+#[test]
+fn clear_of_seams_whole_blocks_are_what_is_shown() {
+    let sample = waves(128, 128, Wrap::Repeat);
+    let surface = baked(&sample, GRID);
+    let whole = SurfaceSettings::realtime();
+    let exact = SurfaceSettings { whole_blocks: false, ..whole };
+    let (mut same, mut other) = (0, 0);
+    for k in 0..40 {
+        // Middles of patches, then places on their corners.
+        let (x, y) = (64.0 * f64::from(k % 7), 64.0 * f64::from(k / 7));
+        let gathered =
+            |shift: f64, settings| surface.gather(&footprint(x + shift, y + shift, 1.6, 1.0, 0.0), 0.02, settings);
+        assert_eq!(gathered(28.0, &exact), gathered(28.0, &whole), "{k}");
+        same += 1;
+        other += u32::from(gathered(0.0, &exact) != gathered(0.0, &whole));
+    }
+    assert!(other > same / 2, "seams make no difference at {other} of {same} corners");
+}

@@ -6,8 +6,9 @@ use crate::render::{Material, Method, Renderer, Shown};
 use crate::scene::Mesh;
 use glam::Vec3;
 use glint_bake_core::error::BakeError;
-use glint_bake_core::{area_light, dictionary, environment, ndf_maps};
+use glint_bake_core::{area_light, dictionary, environment, lobes, ndf_maps, surface};
 use glint_formats::Pack;
+use glint_formats::lobes::LobesParams;
 use std::rc::Rc;
 
 /// All that can be shown, and the environment that can light it.
@@ -38,6 +39,8 @@ impl Subjects {
         for pack in packs {
             subjects.add_dictionaries(gpu, pack, colours)?;
             subjects.add_ndf_maps(gpu, pack)?;
+            subjects.add_lobes(gpu, pack)?;
+            subjects.add_surfaces(gpu, pack)?;
             subjects.add_environments(gpu, pack)?;
             subjects.add_area_lights(gpu, pack)?;
         }
@@ -61,7 +64,7 @@ impl Subjects {
 
     fn share(&mut self, method: Method, name: &str, data: &Rc<Resources>, material: Material) {
         let (name, data) = (name.to_owned(), Rc::clone(data));
-        self.shown.push(Shown { name, method, data, material, constants: Vec::new() });
+        self.shown.push(Shown { name, method, data, material, files: Vec::new(), constants: Vec::new() });
     }
 
     fn add_dictionaries(&mut self, gpu: &Gpu, pack: &Pack, colours: &[Vec3]) -> Result<(), GpuError> {
@@ -93,6 +96,30 @@ impl Subjects {
         Ok(())
     }
 
+    fn add_lobes(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
+        for name in lobes::sections::maps(pack) {
+            let baked = lobes::sections::from_pack(pack, name).map_err(bad)?;
+            let files = methods::lobes::modules(&baked.params).to_vec();
+            let data = Rc::new(methods::lobes::upload(gpu, &baked));
+            let material = lobes_material(&baked.params);
+            let name = name.to_owned();
+            self.shown.push(Shown { name, method: Method::Lobes, data, material, files, constants: Vec::new() });
+        }
+        Ok(())
+    }
+
+    fn add_surfaces(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
+        for name in surface::sections::surfaces(pack) {
+            let baked = surface::sections::from_pack(pack, name).map_err(bad)?;
+            let files = methods::lobes::surface_modules(&baked, true).to_vec();
+            let data = Rc::new(methods::lobes::upload_surface(gpu, &baked));
+            let material = lobes_material(&baked.lobes.params);
+            let name = name.to_owned();
+            self.shown.push(Shown { name, method: Method::Surface, data, material, files, constants: Vec::new() });
+        }
+        Ok(())
+    }
+
     /// The first environment lights the scene; the others would need one of their own.
     fn add_environments(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
         for name in environment::sections::environments(pack) {
@@ -108,7 +135,7 @@ impl Subjects {
             self.environment = Some(Rc::new(methods::environment::upload(gpu, &baked)));
             let data = Rc::new(ResourceSet::default().finish(gpu));
             let material = Material { alpha: [0.25; 2], ..Material::default() };
-            self.shown.push(Shown { name: name.to_owned(), method: Method::Environment, data, material, constants });
+            self.shown.push(Shown { name: name.to_owned(), method: Method::Environment, data, material, files: Vec::new(), constants });
         }
         Ok(())
     }
@@ -137,6 +164,14 @@ fn ndf_material(baked: &ndf_maps::eval::Material) -> Material {
     Material {
         intrinsic_roughness: params.intrinsic_roughness,
         texels_per_unit: EXAMPLES * params.width.max(params.height) as f32,
+        ..Material::default()
+    }
+}
+
+fn lobes_material(params: &LobesParams) -> Material {
+    Material {
+        intrinsic_roughness: params.intrinsic_roughness,
+        texels_per_unit: params.width.max(params.height) as f32,
         ..Material::default()
     }
 }

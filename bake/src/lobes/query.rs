@@ -35,6 +35,25 @@ pub struct QuerySettings {
     pub max_boxes: f32,
     /// Footprints reach this far, in standard deviations.
     pub reach: f32,
+    /// Part of the way from a stored level to the next over which both are read, above 0 to 1.
+    pub blend: f32,
+}
+
+impl QuerySettings {
+    /// Few lobes, for pictures: about three cells of the map's lobes, or a dozen boxes, a footprint. At 32 lobes a cell, mean
+    /// E₁ is 3 to 10 % on most maps (1 to 3 % by default), to 23 % on a steep weave, to 38 % under a texel of flakes.
+    pub fn realtime() -> QuerySettings {
+        QuerySettings {
+            cell_sigmas: 0.18,
+            boxes_until: 0.1,
+            cells_from: 0.15,
+            box_sigmas: 0.7,
+            max_cells: 5.0,
+            max_boxes: 32.0,
+            reach: 1.8,
+            blend: 0.15,
+        }
+    }
 }
 
 impl Default for QuerySettings {
@@ -47,6 +66,7 @@ impl Default for QuerySettings {
             max_cells: 32.0,
             max_boxes: 1024.0,
             reach: 3.0,
+            blend: 0.5,
         }
     }
 }
@@ -216,8 +236,9 @@ impl BakedLobes {
             _ => Detail::Whole,
         };
         let fraction = lambda - finer as f32;
-        // The finer of two stored levels serves alone for half the way: nearer to the map, and only one level is read.
-        let fraction = if finer == 0 { fraction } else { (2.0 * fraction - 1.0).max(0.0) };
+        // The finer of two stored levels serves alone at first: nearer to the map, and only one level is read.
+        let late = |fraction: f32| (1.0 - (1.0 - fraction) / settings.blend).max(0.0);
+        let fraction = if finer == 0 { fraction } else { late(fraction) };
         Lod { finer: detail(finer), coarser: detail(finer + 1), fraction }
     }
 

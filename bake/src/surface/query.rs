@@ -34,6 +34,15 @@ pub struct SurfaceSettings {
     pub box_range: f32,
     /// Footprint's major deviation, in texels, up to which boxes at seams are halved along both axes.
     pub halves_until: f32,
+    /// Whether a block that seams cross is read as that of the patch at its middle, as if there were no seams.
+    pub whole_blocks: bool,
+}
+
+impl SurfaceSettings {
+    /// Few lobes, for pictures: those of [`QuerySettings::realtime`], and no work at seams.
+    pub fn realtime() -> SurfaceSettings {
+        SurfaceSettings { query: QuerySettings::realtime(), whole_blocks: true, ..SurfaceSettings::default() }
+    }
 }
 
 impl Default for SurfaceSettings {
@@ -44,6 +53,7 @@ impl Default for SurfaceSettings {
             owned_sigma: 14.0,
             box_range: 2.0,
             halves_until: 6.0,
+            whole_blocks: false,
         }
     }
 }
@@ -94,6 +104,9 @@ impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
             let Some((x0, x1)) = span_x(&frame, reach, y, y + edge) else { continue };
             for i in index(x0)..=index(x1) {
                 match detail {
+                    Detail::Cells(level) if self.settings.whole_blocks => {
+                        self.add_nominal_block(level, [i * edge as i32, j * edge as i32]);
+                    }
                     Detail::Cells(level) => self.add_block(level, [i * edge as i32, j * edge as i32]),
                     _ => self.add_box(Vec2::new(origin + (i as f32 + 0.5) * edge, y + 0.5 * edge), Vec2::splat(edge)),
                 }
@@ -128,6 +141,18 @@ impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
             }
             block += 1 << (2 * size);
         }
+    }
+
+    /// Adds a block as if it had no seams: the cell of the sample at which the patch at its middle begins there, or the last
+    /// before it.
+    fn add_nominal_block(&mut self, level: usize, at: [i32; 2]) {
+        let params = &self.surface.lobes.params;
+        let grid = &params.levels[level];
+        let step = params.step(grid.cell_texels);
+        let [x, y] = self.on_surface(at);
+        let (sx, sy) = self.surface.synthesis.nominal_texel(x, y, grid.cell_texels as i32);
+        let first = |v: u32, cells: u32| (v / step).min(cells - 1) * step;
+        self.add_cell(level, [first(sx, grid.cells_x), first(sy, grid.cells_y)], at, false);
     }
 
     /// Adds a block by cells of its own edge, if `owned` where seams cross too; says whether there are such.

@@ -78,6 +78,14 @@ impl Synthesis {
         self.aligned(Place { x: place.x - half, y: place.y - half, ..place }, size, step)
     }
 
+    /// The sample texel at which a block of `size` texels at the surface texel (x, y) would begin if the patch at its middle
+    /// showed all of it.
+    pub fn nominal_texel(&self, x: i32, y: i32, size: i32) -> (u32, u32) {
+        let half = size / 2;
+        let place = self.place(x.wrapping_add(half), y.wrapping_add(half));
+        self.in_sample(Place { x: place.x - half, y: place.y - half, ..place })
+    }
+
     fn aligned(&self, place: Place, size: i32, step: u32) -> Option<(u32, u32)> {
         let (x, y) = self.in_sample(place);
         let crosses = |side: u32| self.params.wrap == Wrap::Repeat && side.is_multiple_of(step);

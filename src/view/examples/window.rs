@@ -39,7 +39,7 @@ fn main() -> ExitCode {
                 method,
                 data: Rc::new(data),
                 material,
-                constants: Vec::new(),
+                files: Vec::new(), constants: Vec::new(),
             };
             let list = vec![
                 shown(Method::Smooth, ResourceSet::default().finish(gpu)),

@@ -4,3 +4,4 @@ pub mod area_light;
 pub mod dictionary;
 pub mod environment;
 pub mod ndf_maps;
+pub mod lobes;

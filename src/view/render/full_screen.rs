@@ -4,7 +4,7 @@ use crate::gpu::{Gpu, GpuError};
 
 /// The pipeline of a program that covers its target and reads a uniform and two textures.
 pub(super) fn pipeline(gpu: &Gpu, name: &str, format: wgpu::TextureFormat) -> Result<wgpu::RenderPipeline, GpuError> {
-    let module = gpu.shader(name, &glint_shaders::program(name))?;
+    let module = gpu.shader(name, &glint_shaders::program(name, &[]))?;
     let texture = |binding| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::FRAGMENT,

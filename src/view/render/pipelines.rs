@@ -14,6 +14,7 @@ pub(super) struct Key {
     pub lights: u32,
     pub reference: bool,
     pub overlay: u32,
+    pub files: Vec<&'static str>,
     /// Constants of the method, as bits of their values.
     pub constants: Vec<(&'static str, u64)>,
 }
@@ -21,7 +22,7 @@ pub(super) struct Key {
 /// Pipelines by what they are specialised for, and the shader modules of the methods.
 #[derive(Debug, Default)]
 pub(super) struct Pipelines {
-    modules: HashMap<Method, wgpu::ShaderModule>,
+    modules: HashMap<(Method, Vec<&'static str>), wgpu::ShaderModule>,
     pipelines: HashMap<Key, wgpu::RenderPipeline>,
     backgrounds: HashMap<u32, wgpu::RenderPipeline>,
 }
@@ -37,13 +38,14 @@ impl Pipelines {
         environment: &Resources,
     ) -> Result<&wgpu::RenderPipeline, GpuError> {
         if !self.pipelines.contains_key(&key) {
-            if !self.modules.contains_key(&key.method) {
+            let program = (key.method, key.files.clone());
+            if !self.modules.contains_key(&program) {
                 let name = key.method.name();
-                let module = gpu.shader(name, &glint_shaders::program(name))?;
-                self.modules.insert(key.method, module);
+                let module = gpu.shader(name, &glint_shaders::program(name, &key.files))?;
+                self.modules.insert(program.clone(), module);
             }
             let groups = [scene, &data.layout, &environment.layout];
-            let pipeline = make(gpu, &key, &self.modules[&key.method], groups)?;
+            let pipeline = make(gpu, &key, &self.modules[&program], groups)?;
             self.pipelines.insert(key.clone(), pipeline);
         }
         Ok(&self.pipelines[&key])
@@ -58,7 +60,7 @@ impl Pipelines {
         environment: &Resources,
     ) -> Result<&wgpu::RenderPipeline, GpuError> {
         if !self.backgrounds.contains_key(&lights) {
-            let module = gpu.shader("background", &glint_shaders::program("background"))?;
+            let module = gpu.shader("background", &glint_shaders::program("background", &[]))?;
             let nothing = ResourceSet::default().finish(gpu);
             let groups = [scene, &nothing.layout, &environment.layout];
             let drawing = Drawing { label: "background", module: &module, groups, buffers: &[], covers: false };

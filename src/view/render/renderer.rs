@@ -214,6 +214,7 @@ impl Renderer {
             lights: view_of.scene.lights.bits(),
             reference: side.reference,
             overlay: view_of.display.overlay.number(),
+            files: side.shown.files.clone(),
             constants: constants.map(|(name, value)| (name, value.to_bits())).collect(),
         };
         let data = &side.shown.data;

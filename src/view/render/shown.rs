@@ -26,6 +26,10 @@ pub enum Method {
     Dictionary,
     /// Multi-scale NDF maps of tiny examples, in one or two layers.
     NdfMaps,
+    /// MIP-mapped lobes of a repeated map.
+    Lobes,
+    /// A surface synthesised from patches of a map, by the map's lobes.
+    Surface,
     /// Environment with glints, by radiance levels.
     Environment,
     /// Multi-scale LTC: mean normals with the roughness of what they average.
@@ -51,6 +55,18 @@ impl Method {
             }
             Method::NdfMaps => Facts {
                 name: "ndf-maps",
+                light: LightKind::Sun,
+                baseline: Some(Method::Smooth),
+                has_map: true,
+            },
+            Method::Lobes => Facts {
+                name: "lobes",
+                light: LightKind::Sun,
+                baseline: Some(Method::Smooth),
+                has_map: true,
+            },
+            Method::Surface => Facts {
+                name: "surface",
                 light: LightKind::Sun,
                 baseline: Some(Method::Smooth),
                 has_map: true,
@@ -108,6 +124,8 @@ pub struct Shown {
     pub data: Rc<Resources>,
     /// Parameters.
     pub material: Material,
+    /// Files of the program that follow from the data: one of each group of [`glint_shaders::CHOICES`].
+    pub files: Vec<&'static str>,
     /// Pipeline constants that follow from the data.
     pub constants: Vec<(&'static str, f64)>,
 }

@@ -59,6 +59,19 @@ modules! {
     "glint_ndf_maps" needs ["glint_ndf_ellipse"];
     "bind_ndf_maps" needs ["glint_ndf_maps"];
     "query_ndf_maps" needs ["bind_ndf_maps"];
+    "glint_lobes" needs ["glint_footprint"];
+    "glint_lobes_packed" needs ["glint_lobes"];
+    "glint_lobes_half" needs ["glint_lobes"];
+    "glint_synthesis_paths" needs [];
+    "glint_synthesis" needs ["glint_synthesis_paths"];
+    "glint_synthesis_grid" needs ["glint_synthesis"];
+    "glint_synthesis_tiles" needs ["glint_synthesis", "glint_hash"];
+    "bind_lobes" needs ["glint_lobes", "glint_synthesis_paths"];
+    "query_lobes" needs ["bind_lobes"];
+    "glint_surface" needs ["glint_lobes", "glint_synthesis"];
+    "glint_surface_seams" needs ["glint_surface"];
+    "glint_surface_blocks" needs ["glint_surface"];
+    "query_surface" needs ["bind_lobes", "glint_surface"];
     "view_scene" needs [];
     "view_surface" needs ["view_scene", "view_sky", "glint_brdf", "glint_hash"];
     "view_sky" needs [];
@@ -75,6 +88,9 @@ modules! {
     "shade_environment_smooth" needs ["shade_environment_surface"];
     "shade_environment" needs ["shade_environment_surface", "shade_smooth_brdf", "glint_surface_cells"];
     "shade_ndf_maps" needs ["view_scene", "glint_brdf", "bind_ndf_maps"];
+    "shade_normals" needs ["view_scene", "glint_brdf"];
+    "shade_lobes" needs ["shade_normals", "bind_lobes"];
+    "shade_surface" needs ["shade_normals", "bind_lobes", "glint_surface"];
     "shade_rect_points" needs ["view_scene"];
 }
 
@@ -86,9 +102,24 @@ pub const SHADING: &[Program] = &[
     ("smooth", &["view_surface", "shade_smooth", "shade_rect_points", "shade_environment_smooth"]),
     ("dictionary", &["view_surface", "shade_dictionary", "shade_rect_points", "shade_environment_smooth"]),
     ("ndf-maps", &["view_surface", "shade_ndf_maps", "shade_rect_points", "shade_environment_smooth"]),
+    ("lobes", &["view_surface", "shade_lobes", "shade_rect_points", "shade_environment_smooth"]),
+    ("surface", &["view_surface", "shade_surface", "shade_rect_points", "shade_environment_smooth"]),
     ("environment", &["view_surface", "shade_environment", "shade_rect_points"]),
     ("area-light", &["view_surface", "shade_area_light", "shade_environment_smooth"]),
     ("plain-ltc", &["view_surface", "shade_plain_ltc", "shade_environment_smooth"]),
+];
+
+/// Files of which a method takes one of each group, as its pack stores data; the first where it is all the same.
+pub const CHOICES: &[(&str, &[&[&str]])] = &[
+    ("lobes", &[&["glint_lobes_packed", "glint_lobes_half"]]),
+    (
+        "surface",
+        &[
+            &["glint_lobes_packed", "glint_lobes_half"],
+            &["glint_synthesis_grid", "glint_synthesis_tiles"],
+            &["glint_surface_blocks", "glint_surface_seams"],
+        ],
+    ),
 ];
 
 /// What draws behind the mesh, and what covers the picture.
@@ -98,17 +129,18 @@ pub const PASSES: &[Program] = &[
     ("display", &["view_present"]),
 ];
 
-/// The text of the program that shades a method, or of a pass.
+/// The text of the program that shades a method, or of a pass, with the files of its [`CHOICES`].
 ///
 /// # Panics
 /// If there is none of this name: names are constants of this workspace.
-pub fn program(name: &str) -> String {
+pub fn program(name: &str, choices: &[&str]) -> String {
     let found = SHADING.iter().chain(PASSES).find(|program| program.0 == name);
-    compose(found.unwrap_or_else(|| panic!("there is no program {name}")).1)
+    let files = found.unwrap_or_else(|| panic!("there is no program {name}")).1;
+    compose(&[files, choices].concat())
 }
 
 /// Files of the program that answers queries of a method, with the bindings of `bind_<method>.wgsl` where its files ask for
-/// no others.
+/// no others, and the first of its [`CHOICES`].
 ///
 /// # Panics
 /// If there is no such program.
@@ -117,7 +149,9 @@ pub fn query_files(method: &str) -> Vec<&'static str> {
     let query = module(&query).unwrap_or_else(|| panic!("there is no {query}.wgsl"));
     let is_bound = parts(&[query.name]).iter().any(|module| module.name.starts_with("bind_"));
     let bindings = module(&format!("bind_{method}")).filter(|_| !is_bound);
-    [query].into_iter().chain(bindings).map(|module| module.name).collect()
+    let choices = CHOICES.iter().filter(|choices| choices.0 == method).flat_map(|choices| choices.1);
+    let choices = choices.filter_map(|group| group.first().copied());
+    [query].into_iter().chain(bindings).map(|module| module.name).chain(choices).collect()
 }
 
 /// The file `name`; `None` if there is none.

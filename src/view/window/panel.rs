@@ -115,6 +115,11 @@ fn parameters(ui: &mut Ui, method: Method, material: &mut Material) {
             switch(ui, material, SWAP_LAYERS, "exchange the layers");
             switch(ui, material, ACCURATE, "finer tiles: slower, more accurate");
         }
+        Method::Lobes | Method::Surface => {
+            let slider = Slider::new(&mut material.intrinsic_roughness, 0.001..=0.3).logarithmic(true);
+            ui.add(slider.text("intrinsic roughness σ"));
+            texels(ui, material);
+        }
         Method::Environment => {
             roughness(ui, material);
             facets(ui, material);

@@ -172,7 +172,7 @@ mod tests {
                 method: Method::Smooth,
                 data,
                 material: Material::default(),
-                constants: Vec::new(),
+                files: Vec::new(), constants: Vec::new(),
             };
             Ok(Loaded { list: vec![shown], environment: None })
         })

@@ -1,7 +1,7 @@
 //! Every program of the viewer and of the tests is sound WGSL, whatever adapter there is.
 
 use glint_shaders::translate::CAPABILITIES;
-use glint_shaders::{MODULES, PASSES, SHADING, compose, program};
+use glint_shaders::{CHOICES, MODULES, PASSES, SHADING, compose, program};
 use naga::valid::{ValidationFlags, Validator};
 
 /// Hooks that a shading program must have once, see view_scene.wgsl.
@@ -15,17 +15,28 @@ fn check(what: &str, source: &str) {
     validator.validate(&module).unwrap_or_else(|e| panic!("{what}: {}", e.emit_to_string(source)));
 }
 
+/// Every way to take one file of each group.
+fn all_choices(name: &str) -> Vec<Vec<&'static str>> {
+    let groups = CHOICES.iter().filter(|choices| choices.0 == name).flat_map(|choices| choices.1);
+    groups.fold(vec![Vec::new()], |chosen, group| {
+        chosen.iter().flat_map(|files| group.iter().map(|&file| [&files[..], &[file]].concat())).collect()
+    })
+}
+
 #[test]
 fn programs_of_the_viewer_are_valid() {
     for (name, _) in SHADING {
-        let source = program(name);
-        for hook in HOOKS {
-            assert_eq!(source.matches(&format!("\nfn {hook}(")).count(), 1, "{name}: {hook}");
+        for choices in all_choices(name) {
+            let what = format!("{name} {choices:?}");
+            let source = program(name, &choices);
+            for hook in HOOKS {
+                assert_eq!(source.matches(&format!("\nfn {hook}(")).count(), 1, "{what}: {hook}");
+            }
+            check(&what, &source);
         }
-        check(name, &source);
     }
     for (name, _) in PASSES {
-        check(name, &program(name));
+        check(name, &program(name, &[]));
     }
 }
 

@@ -8,4 +8,6 @@ mod counting;
 mod dictionary;
 mod environment;
 mod ndf_maps;
+mod lobes;
 mod support;
+mod surface;

@@ -1,0 +1,39 @@
+// Bindings of lobes, and of the surface synthesised from their map if there is one: group 1. One layout for both, for
+// glint_lobes.wgsl, glint_synthesis.wgsl and glint_surface.wgsl.
+
+struct LobesData {
+    map: GlintLobesMap,
+    @align(16) synthesis: GlintSynthesis,
+    @align(16) levels: array<GlintLobesLevel, 16>,
+}
+
+@group(1) @binding(0) var<uniform> lobes: LobesData;
+// Section LOBE as it is in the pack.
+@group(1) @binding(1) var<storage, read> lobes_records: array<vec4u>;
+// Section LONM as it is in the pack.
+@group(1) @binding(2) var<storage, read> lobes_normals: array<u32>;
+// Section SYPO as it is in the pack: x in the lower half; at least one element.
+@group(1) @binding(3) var<storage, read> synthesis_offsets: array<u32>;
+// Section SYSE as it is in the pack; at least one element.
+@group(1) @binding(4) var<storage, read> synthesis_seams: array<u32>;
+
+fn glint_lobes_level(index: u32) -> GlintLobesLevel {
+    return lobes.levels[min(index, 15u)];
+}
+
+fn glint_lobes_words(index: u32) -> vec4u {
+    return lobes_records[index];
+}
+
+fn glint_lobes_normals_word(index: u32) -> u32 {
+    return lobes_normals[index];
+}
+
+fn glint_synthesis_offset(patch_index: u32) -> vec2i {
+    let word = synthesis_offsets[patch_index];
+    return vec2i(i32(word & 0xffffu), i32(word >> 16u));
+}
+
+fn glint_synthesis_seam_word(index: u32) -> u32 {
+    return synthesis_seams[index];
+}

@@ -1,0 +1,607 @@
+// MIP-mapped position-normal lobes: the distribution of normals (P-NDF) that a footprint sees on a map.
+// Tan et al. 2022, "Real-Time Microstructure Rendering with MIP-mapped Normal Map Samples", sections 5.1.2 and 5.2, Eq. 6 and 9.
+// Twin of glint-bake-core lobes/{eval,query,span,quantise}.rs, where deviations from the paper are derived. The twin lists the
+// lobes that a footprint sees; here their densities at one normal are summed on the way, in the same order.
+//
+// Accessors that the including program defines:
+//   fn glint_lobes_level(index: u32) -> GlintLobesLevel     level of the section LOPP, 0 the finest
+//   fn glint_lobes_words(index: u32) -> vec4u               16 bytes of the section LOBE: a lobe if packed, else half of one
+//   fn glint_lobes_lobe(map: GlintLobesMap, level: GlintLobesLevel, index: u32) -> GlintLobe
+//                                                           a lobe by its index among all: by glint_lobes_packed.wgsl or
+//                                                           glint_lobes_half.wgsl, as the pack stores them
+//   fn glint_lobes_normals_word(index: u32) -> u32          word of the section LONM, row by row: a texel of 16 bits a channel,
+//                                                           or two texels of 8, the first in the lower half
+
+const GLINT_LOBES_PI: f32 = 3.14159265;
+// 1 / (2 pi).
+const GLINT_LOBES_PEAK: f32 = 0.15915494;
+// Footprints are taken to be at least this wide, in texels: below it positions have no digits left.
+const GLINT_LOBES_LEAST_SIGMA: f32 = 1.0 / 4096.0;
+// Sum of shares below which f32 cannot tell what a footprint sees; the last level is the best that is known then.
+const GLINT_LOBES_LEAST_SHARE: f32 = 1.0e-30;
+// Squared distance, in standard deviations, beyond which a lobe is nothing.
+const GLINT_LOBES_CUT: f32 = 30.0;
+const GLINT_LOBES_MAX_CORRELATION: f32 = 0.998;
+// Rows, and cells or boxes of a row, that a level is read by at most: more than any sound settings lead to.
+const GLINT_LOBES_MOST_STEPS: u32 = 16384u;
+
+const GLINT_LOBES_SNORM16: u32 = 0u;
+const GLINT_LOBES_UNORM8: u32 = 1u;
+const GLINT_WRAP_REPEAT: u32 = 0u;
+const GLINT_WRAP_CLAMP: u32 = 1u;
+
+// A map and how its lobes are stored, from the section LOPP.
+struct GlintLobesMap {
+    // Size in texels.
+    width: u32,
+    height: u32,
+    // GLINT_WRAP_REPEAT or GLINT_WRAP_CLAMP: what filtering sees beyond the map's edge.
+    wrap: u32,
+    // 1: the nearest texel's normal; 0: bilinear.
+    nearest: u32,
+    // GLINT_LOBES_SNORM16 or GLINT_LOBES_UNORM8.
+    normals: u32,
+    lobes_per_cell: u32,
+    // 0: a map's own lobes. Else cells larger than this begin at all its multiples, and the last level is the whole surface.
+    step_texels: u32,
+    // Stored levels.
+    levels: u32,
+    // Smallest projected normal of a lobe, and their range.
+    normal_low: vec2f,
+    normal_extent: vec2f,
+}
+
+// A level: a grid of square cells.
+struct GlintLobesLevel {
+    // Edge of a cell in texels.
+    cell_texels: u32,
+    cells_x: u32,
+    cells_y: u32,
+    first_lobe: u32,
+    // Weight, in texels, that a stored 1.0 stands for.
+    weight_scale: f32,
+    // |ds/du| per texel that a stored 1.0 stands for.
+    jacobian_scale: f32,
+    // Smallest deviation of positions, and log2 of largest over smallest.
+    position_sigma: f32,
+    position_log_ratio: f32,
+    // The same of the normals' residual.
+    residual_sigma: f32,
+    residual_log_ratio: f32,
+    // What stored positions are relative to: the cell's edge, cut to the map.
+    extent: vec2f,
+}
+
+// Choice between speed and accuracy. Deviations are those of the footprint, edges those of cells.
+struct GlintLobesSettings {
+    // Minor deviation over a level's edge from which on the level is read, alone at first.
+    cell_sigmas: f32,
+    // Minor deviation over the finest edge up to which boxes alone are read, and from which on none are.
+    boxes_until: f32,
+    cells_from: f32,
+    // Edge of the largest boxes over the minor deviation.
+    box_sigmas: f32,
+    // Cells a level, and boxes, that a footprint visits, about.
+    max_cells: f32,
+    max_boxes: f32,
+    // Footprints reach this far, in standard deviations.
+    reach: f32,
+    // Part of the way from a stored level to the next over which both are read, above 0 to 1.
+    blend: f32,
+}
+
+// A footprint by its principal axes, in texels.
+struct GlintLobesFrame {
+    mean: vec2f,
+    // Unit vector along the major axis.
+    axis: vec2f,
+    major: f32,
+    minor: f32,
+}
+
+// A footprint and the projected normal at which its density is asked for.
+struct GlintLobesQuery {
+    frame: GlintLobesFrame,
+    // The axes over their deviations: what turns an offset into standard deviations. Zero sees every place alike.
+    along: vec2f,
+    across: vec2f,
+    s: vec2f,
+    // Intrinsic roughness, a standard deviation of projected normals.
+    roughness: f32,
+}
+
+struct GlintLobe {
+    // In texels; 0 is no lobe.
+    weight: f32,
+    // Mean position from the cell's corner, in texels.
+    position: vec2f,
+    // Mean projected normal.
+    normal: vec2f,
+    // Factor of the covariance of positions F F^T, lower triangular: xx, yx, yy.
+    spread: vec3f,
+    // ds/du per texel.
+    jacobian: mat2x2f,
+    // Residual covariance of normals: xx, xy, yy.
+    residual: vec3f,
+}
+
+// What a lobe gives to a footprint: a Gaussian over the disk of normals.
+struct GlintSeenLobe {
+    // Share of the footprint, to be divided by the sum of all shares.
+    share: f32,
+    // Share times density at the query's normal, but for the mass that lies inside the disk.
+    density: f32,
+    // Whether that mass may be less than 1.
+    cut: bool,
+    mean: vec2f,
+    // Covariance: xx, xy, yy.
+    covariance: vec3f,
+}
+
+// Two neighbouring levels: 0 boxes of `box_edge` texels, then the stored ones, then the whole map.
+struct GlintLobesLod {
+    finer: u32,
+    // Weight of the level finer + 1.
+    fraction: f32,
+    box_edge: f32,
+}
+
+// Bilinear patch at a place: projected normal, ds/du, d2s/du dv.
+struct GlintLobesPatch {
+    normal: vec2f,
+    jacobian: mat2x2f,
+    twist: vec2f,
+}
+
+// A cell's place on one axis of the repeated map.
+struct GlintLobesSlot {
+    index: u32,
+    // Copy of the map.
+    copy: f32,
+}
+
+fn glint_lobes_default_settings() -> GlintLobesSettings {
+    return GlintLobesSettings(0.6, 0.25, 0.375, 0.25, 32.0, 1024.0, 3.0, 0.5);
+}
+
+// Few lobes, for pictures: about three cells of the map's lobes, or a dozen boxes, a footprint.
+fn glint_lobes_realtime_settings() -> GlintLobesSettings {
+    return GlintLobesSettings(0.18, 0.1, 0.15, 0.7, 5.0, 32.0, 1.8, 0.15);
+}
+
+// Error function by Numerical Recipes' exponential of a polynomial (Press et al. 1992, section 6.2); error below 4e-7.
+fn glint_erf(x: f32) -> f32 {
+    let a = abs(x);
+    let t = 1.0 / (1.0 + 0.5 * a);
+    var p = -0.82215223 + t * 0.17087277;
+    p = 1.48851587 + t * p;
+    p = -1.13520398 + t * p;
+    p = 0.27886807 + t * p;
+    p = -0.18628806 + t * p;
+    p = 0.09678418 + t * p;
+    p = 0.37409196 + t * p;
+    p = 1.00002368 + t * p;
+    let rest = t * exp(min(-a * a - 1.26551223 + t * p, 0.0));
+    return select(rest - 1.0, 1.0 - rest, x >= 0.0);
+}
+
+// x y' - y x'.
+fn glint_cross2(a: vec2f, b: vec2f) -> f32 {
+    return a.x * b.y - a.y * b.x;
+}
+
+// Axes of a footprint.
+fn glint_lobes_frame(footprint: GlintFootprint) -> GlintLobesFrame {
+    let axes = glint_principal(footprint);
+    return GlintLobesFrame(
+        footprint.mean, axes.axis, max(axes.major, GLINT_LOBES_LEAST_SIGMA), max(axes.minor, GLINT_LOBES_LEAST_SIGMA),
+    );
+}
+
+// The same, its centre moved by whole periods into the map, where positions have the most digits.
+fn glint_lobes_frame_in_map(map: GlintLobesMap, footprint: GlintFootprint) -> GlintLobesFrame {
+    let size = vec2f(f32(map.width), f32(map.height));
+    let limit = vec2f(1.0e7);
+    let place = clamp(footprint.mean, -limit, limit);
+    return glint_lobes_frame(
+        GlintFootprint(place - floor(place / size) * size, footprint.xx, footprint.xy, footprint.yy),
+    );
+}
+
+// A query from its parts.
+fn glint_lobes_query(frame: GlintLobesFrame, s: vec2f, roughness: f32) -> GlintLobesQuery {
+    let across = vec2f(-frame.axis.y, frame.axis.x) / frame.minor;
+    return GlintLobesQuery(frame, frame.axis / frame.major, across, s, roughness);
+}
+
+fn glint_lobes_variance_y(frame: GlintLobesFrame) -> f32 {
+    let a = frame.axis.y * frame.major;
+    let b = frame.axis.x * frame.minor;
+    return a * a + b * b;
+}
+
+// Half the height of the ellipse of `reach` standard deviations.
+fn glint_lobes_reach_y(frame: GlintLobesFrame, reach: f32) -> f32 {
+    return reach * sqrt(glint_lobes_variance_y(frame));
+}
+
+// Range of x of the ellipse of `reach` standard deviations between two heights; x > y if they miss it.
+fn glint_lobes_span_x(frame: GlintLobesFrame, reach: f32, low: f32, high: f32) -> vec2f {
+    let yy = glint_lobes_variance_y(frame);
+    let top = reach * sqrt(yy);
+    let y0 = max(low - frame.mean.y, -top);
+    let y1 = min(high - frame.mean.y, top);
+    if !(y0 <= y1) {
+        return vec2f(1.0, 0.0);
+    }
+    let xy = frame.axis.x * frame.axis.y * (frame.major * frame.major - frame.minor * frame.minor);
+    let a = frame.axis.x * frame.major;
+    let b = frame.axis.y * frame.minor;
+    let xx = a * a + b * b;
+    // At height y: middle -+ half the width. Both sides are extreme where the ellipse is, or at an end of the range.
+    let narrow = frame.major * frame.minor / yy;
+    let widest = reach * xy / sqrt(xx);
+    let left = clamp(-widest, y0, y1);
+    let right = clamp(widest, y0, y1);
+    return vec2f(
+        frame.mean.x + xy / yy * left - narrow * sqrt(max(top * top - left * left, 0.0)),
+        frame.mean.x + xy / yy * right + narrow * sqrt(max(top * top - right * right, 0.0)),
+    );
+}
+
+// Lower triangular factor F of a covariance F F^T: xx, yx, yy.
+fn glint_lobes_factor(sigmas: vec2f, correlation: f32) -> vec3f {
+    let rest = sqrt(max(1.0 - correlation * correlation, 0.0));
+    return vec3f(sigmas.x, correlation * sigmas.y, rest * sigmas.y);
+}
+
+// Covariance of two deviations: xx, xy, yy.
+fn glint_lobes_covariance(sigmas: vec2f, correlation: f32) -> vec3f {
+    return vec3f(sigmas.x * sigmas.x, correlation * sigmas.x * sigmas.y, sigmas.y * sigmas.y);
+}
+
+// Mass inside the disk of a Gaussian that is wide or near the rim: a sum over strips across the line from the disk's middle
+// through its mean, each strip's chord by its conditional Gaussian.
+fn glint_lobes_inside_disk(mean: vec2f, covariance: vec3f) -> f32 {
+    const STRIPS: i32 = 12;
+    let xx = covariance.x;
+    let xy = covariance.y;
+    let yy = covariance.z;
+    let radius = length(mean);
+    var out = vec2f(1.0, 0.0);
+    if radius > 0.0 {
+        out = mean / radius;
+    }
+    let along = out.x * out.x * xx + 2.0 * out.x * out.y * xy + out.y * out.y * yy;
+    let cross = out.x * out.y * (yy - xx) + (out.x * out.x - out.y * out.y) * xy;
+    let rest =
+        max(out.y * out.y * xx - 2.0 * out.x * out.y * xy + out.x * out.x * yy - cross * cross / along, 1.0e-12);
+    let low = max(radius - 4.5 * sqrt(along), -1.0);
+    let step = (1.0 - low) / f32(STRIPS);
+    let across = 1.0 / sqrt(2.0 * along);
+    let beside = 1.0 / sqrt(2.0 * rest);
+    var sum = 0.0;
+    var below = glint_erf((low - radius) * across);
+    for (var k = 0; k < STRIPS; k++) {
+        let x = low + (f32(k) + 0.5) * step;
+        let above = glint_erf((x + 0.5 * step - radius) * across);
+        let chord = sqrt(max(1.0 - x * x, 0.0));
+        let middle = cross / along * (x - radius);
+        sum += (above - below) * (glint_erf((chord - middle) * beside) + glint_erf((chord + middle) * beside));
+        below = above;
+    }
+    return max(0.25 * sum, 1.0e-3);
+}
+
+// What `lobe` gives to a footprint whose centre lies `d` from the lobe's position (Eq. 6).
+fn glint_lobes_seen(query: GlintLobesQuery, lobe: GlintLobe, d: vec2f) -> GlintSeenLobe {
+    // Columns of the spread's factor, in standard deviations of the footprint, and what they are in normals.
+    let p = vec2f(
+        query.along.x * lobe.spread.x + query.along.y * lobe.spread.y, query.along.y * lobe.spread.z,
+    );
+    let q = vec2f(
+        query.across.x * lobe.spread.x + query.across.y * lobe.spread.y, query.across.y * lobe.spread.z,
+    );
+    let a = lobe.jacobian[0] * lobe.spread.x + lobe.jacobian[1] * lobe.spread.y;
+    let b = lobe.jacobian[1] * lobe.spread.z;
+    let w = vec2f(dot(query.along, d), dot(query.across, d));
+    // M = I + F^T S^-1 F is I + p p^T + q q^T; det M and adj M are sums of squares and outer products.
+    let area = glint_cross2(p, q);
+    let det = 1.0 + dot(p, p) + dot(q, q) + area * area;
+    let part = 1.0 / det;
+    let across = p * w.y - q * w.x;
+    let distance = (dot(w, w) + dot(across, across)) * part;
+    let toward = (p * w.x + q * w.y + vec2f(-across.y, across.x) * area) * part;
+    let u = b * p.x - a * p.y;
+    let v = b * q.x - a * q.y;
+    let intrinsic = query.roughness * query.roughness;
+    let xx = intrinsic + lobe.residual.x + (a.x * a.x + b.x * b.x + u.x * u.x + v.x * v.x) * part;
+    let xy = lobe.residual.y + (a.x * a.y + b.x * b.y + u.x * u.y + v.x * v.y) * part;
+    let yy = intrinsic + lobe.residual.z + (a.y * a.y + b.y * b.y + u.y * u.y + v.y * v.y) * part;
+    let mean = lobe.normal + a * toward.x + b * toward.y;
+    let share = lobe.weight * exp(-0.5 * distance) * sqrt(part);
+    // Rounding may take the determinant of a long thin Gaussian below what it can be.
+    let volume = max(xx * yy - xy * xy, intrinsic * max(xx, yy));
+    let e = query.s - mean;
+    let far = (yy * e.x * e.x - 2.0 * xy * e.x * e.y + xx * e.y * e.y) / volume;
+    let near = far <= GLINT_LOBES_CUT;
+    let density = select(0.0, share * inverseSqrt(volume) * exp(-0.5 * far) * GLINT_LOBES_PEAK, near);
+    // Five standard deviations from the rim there is less than 4e-6 beyond it. The twin takes the trace for the largest
+    // variance, which leaves more lobes to a sum that comes to the same.
+    let to_rim = 1.0 - length(mean);
+    let half_gap = 0.5 * (xx - yy);
+    let largest = 0.5 * (xx + yy) + sqrt(half_gap * half_gap + xy * xy);
+    let inside = to_rim > 0.0 && to_rim * to_rim > 25.0 * largest;
+    return GlintSeenLobe(share, density, near && !inside, mean, vec3f(xx, xy, yy));
+}
+
+// Lobe of a box of the filtered map, `size` texels wide and high: exact moments.
+fn glint_lobes_box_lobe(place: GlintLobesPatch, size: vec2f) -> GlintLobe {
+    const PER_EDGE: f32 = 0.28867513; // 1 / sqrt 12
+    let rest = place.twist * (size.x * size.y / 12.0);
+    return GlintLobe(
+        size.x * size.y,
+        vec2f(0.0),
+        place.normal,
+        vec3f(size.x * PER_EDGE, 0.0, size.y * PER_EDGE),
+        place.jacobian,
+        vec3f(rest.x * rest.x, rest.x * rest.y, rest.y * rest.y),
+    );
+}
+
+// Projected normal of texel (i, j), which lies less than the map's size beyond its edges; wrapped or clamped.
+fn glint_lobes_texel(map: GlintLobesMap, i: i32, j: i32) -> vec2f {
+    let size = vec2i(i32(map.width), i32(map.height));
+    var at = vec2i(i, j);
+    if map.wrap == GLINT_WRAP_REPEAT {
+        at += select(vec2i(0), size, at < vec2i(0)) - select(vec2i(0), size, at >= size);
+    }
+    at = clamp(at, vec2i(0), size - 1);
+    let index = u32(at.y) * map.width + u32(at.x);
+    if map.normals == GLINT_LOBES_SNORM16 {
+        return unpack2x16snorm(glint_lobes_normals_word(index));
+    }
+    let pair = unpack4x8unorm(glint_lobes_normals_word(index >> 1u));
+    return select(pair.xy, pair.zw, (index & 1u) == 1u) * 2.0 - 1.0;
+}
+
+// A bilinear patch from its texels, at the fraction `f`.
+fn glint_lobes_bilinear(s00: vec2f, s10: vec2f, s01: vec2f, s11: vec2f, f: vec2f) -> GlintLobesPatch {
+    let top = s00 + (s10 - s00) * f.x;
+    let bottom = s01 + (s11 - s01) * f.x;
+    let twist = s11 - s10 - s01 + s00;
+    let along = s10 - s00 + twist * f.y;
+    return GlintLobesPatch(top + (bottom - top) * f.y, mat2x2f(along, bottom - top), twist);
+}
+
+// Projected normal, Jacobian and twist of the filtered map at a place in it.
+fn glint_lobes_surface_at(map: GlintLobesMap, u: vec2f) -> GlintLobesPatch {
+    if map.nearest == 1u {
+        let at = vec2i(floor(u));
+        return GlintLobesPatch(glint_lobes_texel(map, at.x, at.y), mat2x2f(), vec2f(0.0));
+    }
+    let p = u - 0.5;
+    let cell = floor(p);
+    let at = vec2i(cell);
+    return glint_lobes_bilinear(
+        glint_lobes_texel(map, at.x, at.y),
+        glint_lobes_texel(map, at.x + 1, at.y),
+        glint_lobes_texel(map, at.x, at.y + 1),
+        glint_lobes_texel(map, at.x + 1, at.y + 1),
+        p - cell,
+    );
+}
+
+// Edge of the boxes that a footprint is resolved in: a power of two, at most a texel.
+fn glint_lobes_box_edge(map: GlintLobesMap, frame: GlintLobesFrame, settings: GlintLobesSettings) -> f32 {
+    // The seam of a clamped map cuts through whole-texel boxes.
+    let clamped = map.step_texels == 0u && map.wrap == GLINT_WRAP_CLAMP && map.nearest == 0u;
+    var edge = select(1.0, 0.5, clamped);
+    let a = settings.reach * frame.major;
+    let b = settings.reach * frame.minor;
+    for (var k = 0; k < 16; k++) {
+        let half = 0.5 * edge;
+        if !(edge > settings.box_sigmas * frame.minor && edge > 2.0 * GLINT_LOBES_LEAST_SIGMA)
+            || GLINT_LOBES_PI * (a + half) * (b + half) > settings.max_boxes * half * half {
+            break;
+        }
+        edge = half;
+    }
+    return edge;
+}
+
+// The two levels that serve a footprint, and how they are mixed (Eq. 9).
+fn glint_lobes_lod(map: GlintLobesMap, frame: GlintLobesFrame, settings: GlintLobesSettings) -> GlintLobesLod {
+    let finest = f32(glint_lobes_level(0u).cell_texels);
+    // Cells of edge c = sigma / cell_sigmas that the footprint's ellipse touches: about pi (r a + h c) (r b + h c) / c^2 with
+    // its half axes r a, r b and h c half a cell's mean width. Solved for the sigma at which they are `max_cells`.
+    let a = settings.reach * frame.major;
+    let b = settings.reach * frame.minor;
+    let h = 0.45;
+    let budget = settings.max_cells / GLINT_LOBES_PI - h * h;
+    let edge = (h * (a + b) + sqrt(h * h * (a + b) * (a + b) + 4.0 * budget * a * b)) / (2.0 * budget);
+    let sigma = max(frame.minor, edge * settings.cell_sigmas);
+    let cells = 1.0 + log2(sigma / (finest * settings.cell_sigmas));
+    // Boxes end by the footprint's size, or where there would be more of them than allowed, be they whole texels.
+    let by_size = log2(sigma / (finest * settings.boxes_until)) / log2(settings.cells_from / settings.boxes_until);
+    let by_count = 1.0 + log2(GLINT_LOBES_PI * (a + h) * (b + h) / settings.max_boxes);
+    let boxes = clamp(max(by_size, by_count), 0.0, 1.0);
+    let most = f32(map.levels + 1u);
+    let lambda = min(max(cells, boxes), most);
+    let finer = min(floor(lambda), f32(map.levels));
+    var fraction = lambda - finer;
+    var box_edge = 1.0;
+    if finer == 0.0 {
+        box_edge = glint_lobes_box_edge(map, frame, settings);
+    } else {
+        // The finer of two stored levels serves alone at first: nearer to the map, and only one level is read.
+        fraction = max(1.0 - (1.0 - fraction) / settings.blend, 0.0);
+    }
+    return GlintLobesLod(u32(finer), fraction, box_edge);
+}
+
+// The first of the cells of `edge` texels, `count` of them in every `length`, that touch what lies above `low`.
+fn glint_lobes_first_slot(low: f32, length: f32, edge: f32, count: u32) -> GlintLobesSlot {
+    let copy = floor(low / length);
+    return GlintLobesSlot(min(u32(max((low - copy * length) / edge, 0.0)), count - 1u), copy);
+}
+
+fn glint_lobes_next_slot(slot: GlintLobesSlot, count: u32) -> GlintLobesSlot {
+    if slot.index + 1u >= count {
+        return GlintLobesSlot(0u, slot.copy + 1.0);
+    }
+    return GlintLobesSlot(slot.index + 1u, slot.copy);
+}
+
+// Density and share of the lobes of a cell whose first lobe is `first` and whose corner lies at `corner`. The mass inside the
+// disk takes long and few lobes need it: it stands outside the loop over the others, which ends where one does.
+fn glint_lobes_cell(
+    map: GlintLobesMap,
+    query: GlintLobesQuery,
+    level: GlintLobesLevel,
+    first: u32,
+    corner: vec2f,
+) -> vec2f {
+    var sum = vec2f(0.0);
+    var k = 0u;
+    while k < map.lobes_per_cell {
+        var seen = GlintSeenLobe();
+        while k < map.lobes_per_cell && !seen.cut {
+            let lobe = glint_lobes_lobe(map, level, first + k);
+            seen = glint_lobes_seen(query, lobe, query.frame.mean - corner - lobe.position);
+            sum += vec2f(select(seen.density, 0.0, seen.cut), seen.share);
+            k += 1u;
+        }
+        if seen.cut {
+            sum.x += seen.density / glint_lobes_inside_disk(seen.mean, seen.covariance);
+        }
+    }
+    return sum;
+}
+
+// Density and share of a stored level's cells under the footprint on the repeated map. `whole` sees the first cell, as a
+// footprint does that sees every place alike.
+fn glint_lobes_cells(
+    map: GlintLobesMap,
+    given: GlintLobesQuery,
+    level: GlintLobesLevel,
+    given_reach: f32,
+    whole: bool,
+) -> vec2f {
+    let size = vec2f(f32(map.width), f32(map.height));
+    let edge = f32(level.cell_texels);
+    var query = given;
+    var reach = given_reach;
+    if whole {
+        query.frame.mean = 0.5 * min(vec2f(edge), size);
+        query.along = vec2f(0.0);
+        query.across = vec2f(0.0);
+        reach = 0.0;
+    }
+    let frame = query.frame;
+    let top = glint_lobes_reach_y(frame, reach);
+    var sum = vec2f(0.0);
+    var row = glint_lobes_first_slot(frame.mean.y - top, size.y, edge, level.cells_y);
+    for (var j = 0u; j < GLINT_LOBES_MOST_STEPS; j++) {
+        let start = row.copy * size.y + f32(row.index) * edge;
+        if !(start <= frame.mean.y + top) {
+            break;
+        }
+        let end = min(start + edge, (row.copy + 1.0) * size.y);
+        let span = glint_lobes_span_x(frame, reach, start, end);
+        if span.x <= span.y {
+            var slot = glint_lobes_first_slot(span.x, size.x, edge, level.cells_x);
+            for (var i = 0u; i < GLINT_LOBES_MOST_STEPS; i++) {
+                let left = slot.copy * size.x + f32(slot.index) * edge;
+                if !(left <= span.y) {
+                    break;
+                }
+                let displacement = vec2f(slot.copy, row.copy) * size;
+                let corner = vec2f(f32(slot.index), f32(row.index)) * edge + displacement;
+                let first = level.first_lobe + (row.index * level.cells_x + slot.index) * map.lobes_per_cell;
+                sum += glint_lobes_cell(map, query, level, first, corner);
+                slot = glint_lobes_next_slot(slot, level.cells_x);
+            }
+        }
+        row = glint_lobes_next_slot(row, level.cells_y);
+    }
+    return sum;
+}
+
+// Density and share of boxes of `edge` texels under the footprint on the repeated map.
+fn glint_lobes_boxes(map: GlintLobesMap, query: GlintLobesQuery, edge: f32, reach: f32) -> vec2f {
+    let frame = query.frame;
+    let size = vec2f(f32(map.width), f32(map.height));
+    // Boxes of a bilinear map begin at texel centres, where its patches do.
+    let origin = select(0.5, 0.0, map.nearest == 1u);
+    let top = glint_lobes_reach_y(frame, reach);
+    let first = i32(floor((frame.mean.y - top - origin) / edge));
+    let last = min(i32(floor((frame.mean.y + top - origin) / edge)), first + i32(GLINT_LOBES_MOST_STEPS));
+    var sum = vec2f(0.0);
+    for (var j = first; j <= last; j++) {
+        let y = origin + (f32(j) + 0.5) * edge;
+        let span = glint_lobes_span_x(frame, reach, y - 0.5 * edge, y + 0.5 * edge);
+        if span.x <= span.y {
+            let copy_y = floor(y / size.y) * size.y;
+            let begin = i32(floor((span.x - origin) / edge));
+            let end = min(i32(floor((span.y - origin) / edge)), begin + i32(GLINT_LOBES_MOST_STEPS));
+            var i = begin;
+            while i <= end {
+                var seen = GlintSeenLobe();
+                while i <= end && !seen.cut {
+                    let x = origin + (f32(i) + 0.5) * edge;
+                    let copy = vec2f(floor(x / size.x) * size.x, copy_y);
+                    let centre = vec2f(x, y) - copy;
+                    let lobe = glint_lobes_box_lobe(glint_lobes_surface_at(map, centre), vec2f(edge));
+                    seen = glint_lobes_seen(query, lobe, frame.mean - centre - copy);
+                    sum += vec2f(select(seen.density, 0.0, seen.cut), seen.share);
+                    i += 1;
+                }
+                if seen.cut {
+                    sum.x += seen.density / glint_lobes_inside_disk(seen.mean, seen.covariance);
+                }
+            }
+        }
+    }
+    return sum;
+}
+
+// Density and share of a level: 0 boxes, then the stored ones, then the whole map.
+fn glint_lobes_level_sum(
+    map: GlintLobesMap,
+    query: GlintLobesQuery,
+    level: u32,
+    box_edge: f32,
+    reach: f32,
+) -> vec2f {
+    if level == 0u {
+        return glint_lobes_boxes(map, query, box_edge, reach);
+    }
+    let stored = glint_lobes_level(min(level, map.levels) - 1u);
+    return glint_lobes_cells(map, query, stored, reach, level > map.levels);
+}
+
+// P-NDF at the query's normal of a footprint on the repeated map: density over the disk, 0 outside it. The frame is that of
+// glint_lobes_frame_in_map.
+fn glint_lobes_p_ndf(map: GlintLobesMap, query: GlintLobesQuery, settings: GlintLobesSettings) -> f32 {
+    if !(dot(query.s, query.s) <= 1.0) {
+        return 0.0;
+    }
+    let lod = glint_lobes_lod(map, query.frame, settings);
+    let whole = map.levels + 1u;
+    let last = select(lod.finer, lod.finer + 1u, lod.fraction > 0.0);
+    var density = 0.0;
+    var at = select(lod.finer, last, lod.fraction >= 1.0);
+    var level = at;
+    while at <= last {
+        let sum = glint_lobes_level_sum(map, query, level, lod.box_edge, settings.reach);
+        if !(sum.y >= GLINT_LOBES_LEAST_SHARE) && level < whole {
+            level = whole;
+            continue;
+        }
+        density += select(1.0 - lod.fraction, lod.fraction, at > lod.finer) * sum.x / max(sum.y, GLINT_LOBES_LEAST_SHARE);
+        at += 1u;
+        level = at;
+    }
+    return density;
+}
