@@ -135,7 +135,14 @@ impl Subjects {
             self.environment = Some(Rc::new(methods::environment::upload(gpu, &baked)));
             let data = Rc::new(ResourceSet::default().finish(gpu));
             let material = Material { alpha: [0.25; 2], ..Material::default() };
-            self.shown.push(Shown { name: name.to_owned(), method: Method::Environment, data, material, files: Vec::new(), constants });
+            self.shown.push(Shown {
+                name: name.to_owned(),
+                method: Method::Environment,
+                data,
+                material,
+                files: Vec::new(),
+                constants,
+            });
         }
         Ok(())
     }

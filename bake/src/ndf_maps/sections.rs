@@ -6,7 +6,8 @@ use super::placement::BakedPlacement;
 use crate::error::Result;
 use crate::pack_access::{bytes, names_with, parameters, records};
 use glint_formats::ndf_maps::{
-    CLASSES, DENSITY, LAYERS, LayeredMaterial, NOISE, NORMALS, NdfMapsParams, PALETTE, PARAMS, PLACEMENT, PlacementKind, PlacementParams, TILES,
+    CLASSES, DENSITY, LAYERS, LayeredMaterial, NOISE, NORMALS, NdfMapsParams, PALETTE, PARAMS, PLACEMENT,
+    PlacementKind, PlacementParams, TILES,
 };
 use glint_formats::{Codec, Pack, Resource, Section, vk_format};
 

@@ -39,7 +39,8 @@ fn main() -> ExitCode {
                 method,
                 data: Rc::new(data),
                 material,
-                files: Vec::new(), constants: Vec::new(),
+                files: Vec::new(),
+                constants: Vec::new(),
             };
             let list = vec![
                 shown(Method::Smooth, ResourceSet::default().finish(gpu)),

@@ -3,5 +3,5 @@
 pub mod area_light;
 pub mod dictionary;
 pub mod environment;
-pub mod ndf_maps;
 pub mod lobes;
+pub mod ndf_maps;

@@ -53,24 +53,15 @@ impl Method {
             Method::Dictionary => {
                 Facts { name: "dictionary", light: LightKind::Sun, baseline: Some(Method::Smooth), has_map: false }
             }
-            Method::NdfMaps => Facts {
-                name: "ndf-maps",
-                light: LightKind::Sun,
-                baseline: Some(Method::Smooth),
-                has_map: true,
-            },
-            Method::Lobes => Facts {
-                name: "lobes",
-                light: LightKind::Sun,
-                baseline: Some(Method::Smooth),
-                has_map: true,
-            },
-            Method::Surface => Facts {
-                name: "surface",
-                light: LightKind::Sun,
-                baseline: Some(Method::Smooth),
-                has_map: true,
-            },
+            Method::NdfMaps => {
+                Facts { name: "ndf-maps", light: LightKind::Sun, baseline: Some(Method::Smooth), has_map: true }
+            }
+            Method::Lobes => {
+                Facts { name: "lobes", light: LightKind::Sun, baseline: Some(Method::Smooth), has_map: true }
+            }
+            Method::Surface => {
+                Facts { name: "surface", light: LightKind::Sun, baseline: Some(Method::Smooth), has_map: true }
+            }
             Method::Environment => Facts {
                 name: "environment",
                 light: LightKind::Environment,

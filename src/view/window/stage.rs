@@ -172,7 +172,8 @@ mod tests {
                 method: Method::Smooth,
                 data,
                 material: Material::default(),
-                files: Vec::new(), constants: Vec::new(),
+                files: Vec::new(),
+                constants: Vec::new(),
             };
             Ok(Loaded { list: vec![shown], environment: None })
         })

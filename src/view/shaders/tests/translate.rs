@@ -31,6 +31,15 @@ fn accepted_by(program: &str, args: &[&str], files: &[ShaderFile]) {
     }
 }
 
+/// HLSL whose arrays are not initialised by a cast of 0, which is HLSL, but not to glslangValidator.
+fn without_array_casts(text: &str) -> String {
+    let lines = text.lines().map(|line| match line.split_once(" = (") {
+        Some((before, after)) if after.ends_with("])0;") => format!("{before};"),
+        _ => line.to_owned(),
+    });
+    lines.collect::<Vec<String>>().join("\n")
+}
+
 /// Names of the functions of a method's library file.
 fn functions(method: &str) -> Vec<String> {
     let file = glint_shaders::module(&format!("glint_{method}")).unwrap();
@@ -84,7 +93,10 @@ fn glsl_compiles() {
 
 #[test]
 fn hlsl_compiles() {
-    let found = all(Language::Hlsl);
+    let mut found = all(Language::Hlsl);
+    for file in &mut found {
+        file.bytes = without_array_casts(text(file)).into_bytes();
+    }
     for file in &found {
         assert!(
             text(file).contains("void main(uint3") && text(file).contains("[numthreads(64, 1, 1)]"),
@@ -125,8 +137,12 @@ fn metal_has_an_entry_point_with_every_resource() {
     for file in all(Language::Msl) {
         let text = text(&file);
         assert!(text.contains("kernel void main_("), "{}", file.name);
-        for slot in ["[[buffer(0)]]", "[[buffer(1)]]", "[[texture(0)]]"] {
+        for slot in ["[[buffer(0)]]", "[[buffer(1)]]"] {
             assert_eq!(text.matches(slot).count(), 1, "{}: {slot}", file.name);
+        }
+        let textures = text.matches("[[texture(").count();
+        for slot in 0..textures {
+            assert_eq!(text.matches(&format!("[[texture({slot})]]")).count(), 1, "{}: texture {slot}", file.name);
         }
         let entry = &text[text.find("kernel void main_(").unwrap()..];
         assert_eq!(text.matches('{').count(), text.matches('}').count(), "{}", file.name);

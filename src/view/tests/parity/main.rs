@@ -7,7 +7,7 @@ mod area_light;
 mod counting;
 mod dictionary;
 mod environment;
-mod ndf_maps;
 mod lobes;
+mod ndf_maps;
 mod support;
 mod surface;
