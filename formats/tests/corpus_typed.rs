@@ -578,7 +578,7 @@ fn lobes_and_synthesis_that_do_not_fit_are_found() {
     // Cells of four texels cannot be told from the surface as a whole, and of cells in steps there must be one.
     let levels: [fn(&mut LobesParams, &mut SynthesisParams); 3] = [
         |lobes, _| lobes.levels[0].cells_x = 1,
-        |lobes, _| lobes.levels[1].cells_x = 2,
+        |lobes, _| lobes.levels[1].cells_x = 5,
         |lobes, _| lobes.levels[1].cell_texels = 4,
     ];
     for edit in levels {
