@@ -4,6 +4,7 @@
 mod real_maps;
 
 use glam::DVec2;
+use glint_bake_core::lobes::eval::Frame;
 use glint_bake_core::lobes::options::LobesOptions;
 use glint_bake_core::lobes::quality::{Measured, footprint_errors};
 use glint_bake_core::lobes::query::QuerySettings;
@@ -34,5 +35,45 @@ fn footprints_of_real_maps_are_within_their_error_and_far_ahead_of_k_means() {
             let allowed = if sigma == 2.0 { finest } else { (0.5 * paper).min(0.07) };
             assert!(ours <= allowed, "{file}, σ {sigma}: {ours}, k-means {paper}");
         }
+    }
+}
+
+#[test]
+fn wide_footprints_are_no_worse_than_others() {
+    let Some(data) = data() else { return };
+    for file in ["normals/wicker_khronos_512.png", "normals/diamond_plate_pmndrs0008.jpg"] {
+        let map = load(&data, file, Some((0, 0, 256)));
+        let baked = bake(&map, &LobesOptions { footprints: 0, ..LobesOptions::default() }, &Silent).unwrap();
+        let reference = Reference::new(&map, Filter::Linear, 0.02).refined(0.6);
+        // 44.8 texels: where the last level's cells serve alone from.
+        for sigma in [44.8, 64.0, 128.0, 256.0] {
+            let places = sweep::footprints(sigma, 1.0, DVec2::splat(256.0), 2, 9);
+            let chosen = [(&baked, Measured::Chosen(QuerySettings::default()))];
+            let error = footprint_errors(&reference, &chosen, &places, 9)[0].e1.mean;
+            assert!(error <= 0.07, "{file}, σ {sigma}: {error}");
+        }
+    }
+}
+
+#[test]
+fn levels_of_real_maps_pass_into_each_other_without_a_jump() {
+    let Some(data) = data() else { return };
+    let settings = QuerySettings::default();
+    for file in ["normals/leather_008_3dtextures.jpg", "normals/scratched_gold_cgbookcase_rgba.png"] {
+        let map = load(&data, file, Some((0, 0, 128)));
+        let baked = bake(&map, &LobesOptions { footprints: 0, ..LobesOptions::default() }, &Silent).unwrap();
+        let reference = Reference::new(&map, Filter::Linear, 0.02).refined(0.6);
+        let mut mixtures = 0;
+        for step in 0..24 {
+            let sigma = 2.0 * 2.0f64.powf(step as f64 / 4.0);
+            let place = sweep::footprints(sigma, 1.0, DVec2::splat(128.0), 1, 9);
+            let lod = baked.lod(&Frame::new(&place[0]), &settings);
+            let ways = [Measured::Chosen(settings), Measured::At(lod.finer), Measured::At(lod.coarser)];
+            let errors = footprint_errors(&reference, &ways.map(|way| (&baked, way)), &place, 6);
+            let [mixed, finer, coarser] = [0, 1, 2].map(|k| errors[k].e1.mean);
+            assert!(mixed <= 1.2 * finer.max(coarser), "{file}, σ {sigma}: {mixed} of {finer} and {coarser}");
+            mixtures += u32::from(lod.fraction > 0.0 && lod.fraction < 1.0);
+        }
+        assert!(mixtures >= 4, "{mixtures}");
     }
 }

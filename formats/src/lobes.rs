@@ -21,6 +21,8 @@ pub const NORMALS: FourCc = FourCc(*b"LONM");
 pub const MAX_TEXTURE_SIZE: u32 = 16_384;
 /// Most lobes a cell.
 pub const MAX_LOBES_PER_CELL: u32 = 256;
+/// Most columns and rows of cells of the last level, whose lobes together stand for the whole.
+pub const MAX_LAST_CELLS: u32 = 4;
 /// Stored correlations are at most this, so that every covariance is positive definite.
 pub const MAX_CORRELATION: f32 = 0.998;
 /// Standard deviations are stored by their logarithm over this ratio of largest to smallest, at most.
@@ -149,13 +151,13 @@ pub struct LobesParams {
     pub lobes_per_cell: u32,
     /// 0: a map's own lobes; cells of a level lie side by side. Else the map is the sample of a surface of patches (section
     /// [`crate::synthesis::PARAMS`] of the same name): cells larger than this begin at all its multiples, so that whole
-    /// blocks of patches are cells; the last level is the whole surface in one cell, every place alike.
+    /// blocks of patches are cells; the last level is the whole surface, every place alike, its lobes dealt out to a few cells.
     pub step_texels: u32,
     /// Smallest projected normal of a lobe: what a stored 0 stands for.
     pub normal_low: [f32; 2],
     /// Range of projected normals of lobes.
     pub normal_extent: [f32; 2],
-    /// Levels, cells of doubling edge; the last has one cell.
+    /// Levels, cells of doubling edge; the last has at most [`MAX_LAST_CELLS`] columns and rows.
     pub levels: Vec<LobeLevel>,
     /// Roughness that the error was measured at: the intrinsic one, or larger where normals range too far to resolve it.
     pub measured_roughness: f32,

@@ -2,8 +2,8 @@
 
 use crate::issue::{Issue, IssueCode};
 use crate::lobes::{
-    HalfLobe, LOBES, LobeLevel, LobeStorage, LobesParams, MAX_LOBES_PER_CELL, MAX_SIGMA_RATIO, MAX_TEXTURE_SIZE,
-    NORMALS, NormalsStorage, PARAMS, PackedLobe,
+    HalfLobe, LOBES, LobeLevel, LobeStorage, LobesParams, MAX_LAST_CELLS, MAX_LOBES_PER_CELL, MAX_SIGMA_RATIO,
+    MAX_TEXTURE_SIZE, NORMALS, NormalsStorage, PARAMS, PackedLobe,
 };
 use crate::ndf_maps::Wrap;
 use crate::sections::{Loaded, Sections};
@@ -97,7 +97,7 @@ fn check_levels(params: &LobesParams) -> Result<u64, String> {
     let mut finer = None;
     for (i, level) in params.levels.iter().enumerate() {
         let whole = params.step_texels != 0 && i > 0 && i + 1 == params.levels.len();
-        let grid = if whole { (1, 1) } else { params.grid(level.cell_texels) };
+        let grid = if whole { (level.cells_x, level.cells_y) } else { params.grid(level.cell_texels) };
         check_level(level, grid, lobes, finer).map_err(|why| format!("level {i}: {why}"))?;
         let cells = u64::from(level.cells_x) * u64::from(level.cells_y);
         lobes += cells * u64::from(params.lobes_per_cell);
@@ -108,8 +108,11 @@ fn check_levels(params: &LobesParams) -> Result<u64, String> {
     }
     match params.levels.last() {
         None => Err(String::from("expected at least one level, found none")),
-        Some(last) if (last.cells_x, last.cells_y) != (1, 1) => {
-            Err(format!("expected one cell in the last level, found {} × {}", last.cells_x, last.cells_y))
+        Some(last) if last.cells_x.max(last.cells_y) > MAX_LAST_CELLS => {
+            let (x, y) = (last.cells_x, last.cells_y);
+            Err(format!(
+                "expected at most {MAX_LAST_CELLS} × {MAX_LAST_CELLS} cells in the last level, found {x} × {y}"
+            ))
         }
         Some(_) => Ok(lobes),
     }

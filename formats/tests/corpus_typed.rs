@@ -5,7 +5,7 @@ use crate::samples::*;
 use glint_formats::area_light::{self, AreaLightParams};
 use glint_formats::dictionary::{self, DictionaryParams};
 use glint_formats::environment::{self, EnvironmentParams};
-use glint_formats::lobes::{self, HalfLobe, LobeStorage, LobesParams, PackedLobe};
+use glint_formats::lobes::{self, HalfLobe, LobeLevel, LobeStorage, LobesParams, PackedLobe};
 use glint_formats::ndf_maps::*;
 use glint_formats::provenance::{PROVENANCE, Provenance};
 use glint_formats::synthesis::{self, Layout, SynthesisParams};
@@ -419,7 +419,7 @@ fn every_way_lobes_can_be_wrong_is_found() {
     }
     let levels: [fn(&mut LobesParams); 11] = [
         |params| params.levels.clear(),
-        |params| params.levels.truncate(1),
+        |params| params.levels = vec![LobeLevel { cell_texels: 1, cells_x: 5, cells_y: 3, ..params.levels[0] }],
         |params| params.levels[0].cell_texels = 6,
         |params| params.levels[1].cell_texels = 16,
         |params| params.levels[0].cells_y = 2,
@@ -433,6 +433,8 @@ fn every_way_lobes_can_be_wrong_is_found() {
     for edit in levels {
         assert_eq!(codes(&lobes_with_params(edit)), [IssueCode::LobesLevels]);
     }
+    // Two cells may be the last level; its lobes are then too many.
+    assert_eq!(codes(&lobes_with_params(|params| params.levels.truncate(1))), [IssueCode::LobesCount]);
     let halves: [fn(&mut HalfLobe); 6] = [
         |lobe| lobe.weight = 0x7e00,
         |lobe| lobe.position_sigma[1] = 0xbc00,
@@ -576,7 +578,7 @@ fn lobes_and_synthesis_that_do_not_fit_are_found() {
     // Cells of four texels cannot be told from the surface as a whole, and of cells in steps there must be one.
     let levels: [fn(&mut LobesParams, &mut SynthesisParams); 3] = [
         |lobes, _| lobes.levels[0].cells_x = 1,
-        |lobes, _| lobes.levels[1].cells_x = 2,
+        |lobes, _| lobes.levels[1].cells_x = 5,
         |lobes, _| lobes.levels[1].cell_texels = 4,
     ];
     for edit in levels {

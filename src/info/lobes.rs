@@ -97,6 +97,10 @@ impl LobesInfo {
         })
     }
 
+    fn levels_in_words(&self) -> String {
+        if self.levels == 1 { "1 level".to_owned() } else { format!("{} levels", self.levels) }
+    }
+
     /// Size and error on one line.
     pub fn accuracy_line(&self) -> String {
         let errors: Vec<String> = self
@@ -106,10 +110,10 @@ impl LobesInfo {
             .collect();
         let errors = if errors.is_empty() { "not measured".to_owned() } else { errors.join(", ") };
         format!(
-            "{} × {} texels, {} levels, lobes {} and normals {}, E₁ {errors}",
+            "{} × {} texels, {}, lobes {} and normals {}, E₁ {errors}",
             self.width,
             self.height,
-            self.levels,
+            self.levels_in_words(),
             kib(self.lobe_bytes),
             kib(self.normal_bytes)
         )
@@ -124,8 +128,12 @@ impl LobesInfo {
         let _ = writeln!(out, "  roughness    merged for σ_r {}", self.intrinsic_roughness);
         let _ = writeln!(
             out,
-            "  lobes        {} a cell, {} levels from {} texels on, {} from {} a texel",
-            self.lobes_per_cell, self.levels, self.cell_texels, self.merge, self.seeds
+            "  lobes        {} a cell, {} from {} texels on, {} from {} a texel",
+            self.lobes_per_cell,
+            self.levels_in_words(),
+            self.cell_texels,
+            self.merge,
+            self.seeds
         );
         let _ = writeln!(
             out,

@@ -11,17 +11,17 @@ fn a_map_becomes_a_pack_that_verifies_and_is_described() {
     let case = case();
     let done = case.bake(&[]).ok();
     assert!(done.stdout.is_empty(), "{}", done.stdout);
-    assert!(done.stderr.contains("scratches: 16 × 8 texels, 2 levels, lobes 1.5 KiB"), "{}", done.stderr);
+    assert!(done.stderr.contains("scratches: 16 × 8 texels, 1 level, lobes 1.0 KiB"), "{}", done.stderr);
     case.verify();
 
     let report = case.report();
     let lobes = &report["lobes"][0];
     assert_eq!(
         (&lobes["name"], &lobes["merge"], &lobes["levels"]),
-        (&"scratches".into(), &"runnalls".into(), &2.into())
+        (&"scratches".into(), &"runnalls".into(), &1.into())
     );
-    // Two cells of 8 texels and one of 16.
-    assert_eq!(lobes["lobe_bytes"], 3 * 32 * 16);
+    // Two cells of 8 texels.
+    assert_eq!(lobes["lobe_bytes"], 2 * 32 * 16);
     let error = lobes["measured"][0]["mean"].as_f64().unwrap();
     assert!(error > 0.0 && error < 0.1, "{lobes}");
     assert_eq!(report["provenance"][0]["method"], "lobes");
@@ -32,7 +32,7 @@ fn a_map_becomes_a_pack_that_verifies_and_is_described() {
 
     let text = case.info(&[]).ok().stdout;
     for part in
-        ["LOBE \"scratches\"", "96 × 16 bytes", "32 a cell, 2 levels from 8 texels on", "runnalls from 4 a texel"]
+        ["LOBE \"scratches\"", "64 × 16 bytes", "32 a cell, 1 level from 8 texels on", "runnalls from 4 a texel"]
     {
         assert!(text.contains(part), "{part} is missing from:\n{text}");
     }
@@ -106,7 +106,7 @@ fn what_cannot_work_is_refused_by_the_name_of_its_flag() {
 fn a_dry_run_checks_all_and_writes_nothing() {
     let case = case();
     let done = case.bake(&["-n", "--report", "r.json", "--depfile", "d"]).ok();
-    let said = "16 × 8 texels, 32 lobes a cell of 8 texels, 2.0 KiB at most; dry run, nothing was written";
+    let said = "16 × 8 texels, 32 lobes a cell of 8 texels, 1.5 KiB at most; dry run, nothing was written";
     assert!(done.stderr.contains(said), "{}", done.stderr);
     assert_eq!(case.names(), ["flakes.png", "scratches.png"]);
 }

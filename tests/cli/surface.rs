@@ -26,7 +26,7 @@ fn a_surface_becomes_a_pack_that_verifies_and_is_described() {
     assert_eq!((&surface["name"], &surface["patches"], &surface["patch"]), (&"hide".into(), &28.into(), &32.into()));
     assert_eq!(surface["size"], serde_json::json!([200, 100]));
     // 64 cells of 8 texels, 16 of 16 and of 32 each, and the whole.
-    assert_eq!(surface["sample"]["lobe_bytes"], (64 + 16 + 16 + 1) * 32 * 16);
+    assert_eq!(surface["sample"]["lobe_bytes"], (64 + 16 + 16 + 4) * 32 * 16);
     let options = report["provenance"][0]["options"].as_array().unwrap();
     assert!(options.contains(&serde_json::json!(["synthesize", "200x100"])), "{options:?}");
     let text = case.info(&[]).ok().stdout;

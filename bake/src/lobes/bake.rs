@@ -17,7 +17,7 @@ use crate::progress::Progress;
 use crate::quality::sweep;
 use crate::rng::ItemRng;
 use glam::{DVec2, Vec2};
-use glint_formats::lobes::{FootprintError, LobeLevel, LobeStorage, LobesParams, NormalsStorage};
+use glint_formats::lobes::{FootprintError, LobeLevel, LobeStorage, LobesParams, MAX_LAST_CELLS, NormalsStorage};
 use glint_formats::ndf_maps::Wrap;
 use rayon::prelude::*;
 
@@ -25,7 +25,7 @@ use rayon::prelude::*;
 /// the cost of a reduction grows with the square of the parts of a cell.
 const SEED_CELL: u32 = 8;
 /// Footprint that cells of an edge are read with, over that edge: differences of position below it do not show.
-const BLUR_OF_CELL: f64 = 0.4;
+const BLUR_OF_CELL: f64 = 0.6;
 /// Sizes of footprints that the bake measures its error over, in texels, as far as the map goes.
 pub(crate) const MEASURED_SIGMAS: [f64; 5] = [2.0, 4.0, 8.0, 16.0, 32.0];
 
@@ -121,14 +121,15 @@ pub(crate) fn without_levels(map: &NormalMap, options: &LobesOptions) -> BakedLo
     }
 }
 
-/// Levels of cells of doubling edge, up to one cell.
+/// Levels of cells of doubling edge, up to so few cells that all of them are read for the whole map: one cell's lobes would
+/// be too few for it.
 fn grids(map: &NormalMap, options: &LobesOptions) -> Vec<LobeLevel> {
     let mut cell = options.cell_texels;
     let mut grids = Vec::new();
     loop {
         grids.push(grid(map, cell));
         let LobeLevel { cells_x, cells_y, .. } = grids[grids.len() - 1];
-        if cells_x * cells_y == 1 {
+        if cells_x.max(cells_y) <= MAX_LAST_CELLS {
             return grids;
         }
         cell *= 2;

@@ -2,7 +2,7 @@
 
 use crate::error::{BakeError, Result};
 use crate::normal_map::NormalMap;
-use glint_formats::lobes::{Filter, LobeStorage, MAX_LOBES_PER_CELL, MAX_TEXTURE_SIZE, Merge};
+use glint_formats::lobes::{Filter, LobeStorage, MAX_LAST_CELLS, MAX_LOBES_PER_CELL, MAX_TEXTURE_SIZE, Merge};
 
 /// Smallest and largest intrinsic roughness σ_r.
 pub const ROUGHNESS_RANGE: (f64, f64) = (1e-4, 1.0);
@@ -96,9 +96,9 @@ impl LobesOptions {
         let mut cell = self.cell_texels;
         let mut cells = 0;
         loop {
-            let level = width.div_ceil(cell) as u64 * height.div_ceil(cell) as u64;
-            cells += level;
-            if level == 1 {
+            let (columns, rows) = (width.div_ceil(cell), height.div_ceil(cell));
+            cells += columns as u64 * rows as u64;
+            if columns.max(rows) <= MAX_LAST_CELLS {
                 break;
             }
             cell *= 2;

@@ -59,7 +59,7 @@ impl QuerySettings {
 impl Default for QuerySettings {
     fn default() -> QuerySettings {
         QuerySettings {
-            cell_sigmas: 0.6,
+            cell_sigmas: 0.7,
             boxes_until: 0.25,
             cells_from: 0.375,
             box_sigmas: 0.25,
@@ -299,7 +299,7 @@ impl BakedLobes {
     pub(crate) fn visit_whole(&self, roughness: f32, visit: &mut impl FnMut(&SeenLobe)) {
         let top = &self.params.levels[self.params.levels.len() - 1];
         let scales = Scales::new(&self.params, top);
-        for index in top.first_lobe..top.first_lobe + self.params.lobes_per_cell {
+        for index in top.first_lobe..top.first_lobe + top.cells_x * top.cells_y * self.params.lobes_per_cell {
             let lobe = self.lobe(index, &scales);
             if lobe.weight > 0.0 {
                 visit(&eval::seen_whole(&lobe, roughness));

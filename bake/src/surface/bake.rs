@@ -12,7 +12,7 @@ use crate::lobes::{BakedLobes, LobesOptions};
 use crate::normal_map::NormalMap;
 use crate::progress::Progress;
 use crate::synthesis::{self, SynthesisOptions};
-use glint_formats::lobes::LobeLevel;
+use glint_formats::lobes::{LobeLevel, MAX_LAST_CELLS};
 use glint_formats::ndf_maps::Wrap;
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -74,7 +74,9 @@ pub fn most_bytes(width: u32, height: u32, lobes: &LobesOptions, synthesis: &Syn
     };
     let cells: u64 = edges(lobes.cell_texels, synthesis.patch).map(stored).sum();
     let texels = width as u64 * height as u64 * lobes.most_texel_bytes();
-    (cells + 1) * lobes.lobes_per_cell as u64 * lobes.storage.stride() as u64 + texels + synthesis.most_bytes()
+    (cells + MAX_LAST_CELLS as u64) * lobes.lobes_per_cell as u64 * lobes.storage.stride() as u64
+        + texels
+        + synthesis.most_bytes()
 }
 
 /// The map as patches are cut from it.
@@ -135,7 +137,9 @@ fn build_levels(
     let Some(first) = grids.first() else { return };
     let lobes = whole::reduce(synthesis, first, baked.params.step(first.cell_texels), &finest, options);
     let edge = 2 * grids[grids.len() - 1].cell_texels;
-    levels::store(&LobeLevel { cells_x: 1, cells_y: 1, ..levels::grid(sample, edge) }, &[lobes], baked);
+    let cells: Vec<Vec<Gaussian4>> = lobes.chunks(options.lobes_per_cell as usize).map(<[Gaussian4]>::to_vec).collect();
+    let last = LobeLevel { cells_x: cells.len() as u32, cells_y: 1, ..levels::grid(sample, edge) };
+    levels::store(&last, &cells, baked);
 }
 
 /// The four cells of `below` that make up cell (x, y) of the level above; across the sample's edge they are moved there.

@@ -8,7 +8,7 @@ use crate::lobes::merge::{self, MergeSettings};
 use crate::rng::ItemRng;
 use crate::synthesis::Synthesis;
 use glam::{DMat2, DVec2};
-use glint_formats::lobes::LobeLevel;
+use glint_formats::lobes::{LobeLevel, MAX_LAST_CELLS};
 use glint_formats::synthesis::Layout;
 use rayon::prelude::*;
 
@@ -19,7 +19,7 @@ const GROUP: usize = 4;
 /// Purpose of the random numbers of k-means here.
 const PURPOSE: u32 = 8;
 
-/// Lobes of the whole surface from the cells of the finest stored level, which begin at multiples of `step`.
+/// Lobes of the whole surface, at most those of [`MAX_LAST_CELLS`] cells, from the cells of the finest stored level, which begin at multiples of `step`.
 pub(super) fn reduce(
     surface: &Synthesis,
     grid: &LobeLevel,
@@ -43,8 +43,8 @@ pub(super) fn reduce(
             .collect()
     };
     let mut sets: Vec<Vec<Gaussian4>> = cells.iter().zip(&counts).filter(|(_, count)| **count > 0).map(seen).collect();
-    let settings =
-        MergeSettings { merge: options.merge, lobes: options.lobes_per_cell as usize, blur: [1.0, options.roughness] };
+    let most = MAX_LAST_CELLS * options.lobes_per_cell;
+    let settings = MergeSettings { merge: options.merge, lobes: most as usize, blur: [1.0, options.roughness] };
     let mut round = 0;
     while sets.len() > 1 {
         sets = sets
