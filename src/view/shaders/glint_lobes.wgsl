@@ -161,7 +161,7 @@ struct GlintLobesSlot {
 }
 
 fn glint_lobes_default_settings() -> GlintLobesSettings {
-    return GlintLobesSettings(0.6, 0.25, 0.375, 0.25, 32.0, 1024.0, 3.0, 0.5);
+    return GlintLobesSettings(0.7, 0.25, 0.375, 0.25, 32.0, 1024.0, 3.0, 0.5);
 }
 
 // Few lobes, for pictures: about three cells of the map's lobes, or a dozen boxes, a footprint.
@@ -479,27 +479,28 @@ fn glint_lobes_cell(
     return sum;
 }
 
-// Density and share of a stored level's cells under the footprint on the repeated map. `whole` sees the first cell, as a
-// footprint does that sees every place alike.
+// Density and share of a stored level's cells under the footprint on the repeated map. `whole` sees each of the level's cells
+// once, as a footprint does that sees every place alike.
 fn glint_lobes_cells(
     map: GlintLobesMap,
     given: GlintLobesQuery,
     level: GlintLobesLevel,
-    given_reach: f32,
+    reach: f32,
     whole: bool,
 ) -> vec2f {
-    let size = vec2f(f32(map.width), f32(map.height));
+    var size = vec2f(f32(map.width), f32(map.height));
     let edge = f32(level.cell_texels);
     var query = given;
-    var reach = given_reach;
     if whole {
-        query.frame.mean = 0.5 * min(vec2f(edge), size);
+        size = vec2f(f32(level.cells_x), f32(level.cells_y)) * edge;
+        query.frame.mean = 0.5 * size;
         query.along = vec2f(0.0);
         query.across = vec2f(0.0);
-        reach = 0.0;
     }
     let frame = query.frame;
-    let top = glint_lobes_reach_y(frame, reach);
+    // From a little inside the first cell to a little inside the last.
+    let all = 0.5 * size - 0.25;
+    let top = select(glint_lobes_reach_y(frame, reach), all.y, whole);
     var sum = vec2f(0.0);
     var row = glint_lobes_first_slot(frame.mean.y - top, size.y, edge, level.cells_y);
     for (var j = 0u; j < GLINT_LOBES_MOST_STEPS; j++) {
@@ -508,7 +509,8 @@ fn glint_lobes_cells(
             break;
         }
         let end = min(start + edge, (row.copy + 1.0) * size.y);
-        let span = glint_lobes_span_x(frame, reach, start, end);
+        let under = glint_lobes_span_x(frame, reach, start, end);
+        let span = select(under, vec2f(frame.mean.x - all.x, frame.mean.x + all.x), whole);
         if span.x <= span.y {
             var slot = glint_lobes_first_slot(span.x, size.x, edge, level.cells_x);
             for (var i = 0u; i < GLINT_LOBES_MOST_STEPS; i++) {
