@@ -5,6 +5,7 @@ use super::targets::{DEPTH, RADIANCE};
 use crate::gpu::{Gpu, GpuError, ResourceSet, Resources};
 use crate::scene::Vertex;
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::mem::offset_of;
 
 /// What a pipeline is specialised for.
@@ -59,14 +60,16 @@ impl Pipelines {
         scene: &wgpu::BindGroupLayout,
         environment: &Resources,
     ) -> Result<&wgpu::RenderPipeline, GpuError> {
-        if !self.backgrounds.contains_key(&lights) {
-            let module = gpu.shader("background", &glint_shaders::program("background", &[]))?;
-            let nothing = ResourceSet::default().finish(gpu);
-            let groups = [scene, &nothing.layout, &environment.layout];
-            let drawing = Drawing { label: "background", module: &module, groups, buffers: &[], covers: false };
-            self.backgrounds.insert(lights, drawing.pipeline(gpu, &[("LIGHTS", f64::from(lights))])?);
+        match self.backgrounds.entry(lights) {
+            Entry::Occupied(made) => Ok(made.into_mut()),
+            Entry::Vacant(place) => {
+                let module = gpu.shader("background", &glint_shaders::program("background", &[]))?;
+                let nothing = ResourceSet::default().finish(gpu);
+                let groups = [scene, &nothing.layout, &environment.layout];
+                let drawing = Drawing { label: "background", module: &module, groups, buffers: &[], covers: false };
+                Ok(place.insert(drawing.pipeline(gpu, &[("LIGHTS", f64::from(lights))])?))
+            }
         }
-        Ok(&self.backgrounds[&lights])
     }
 }
 

@@ -47,6 +47,18 @@ struct Facts {
 }
 
 impl Method {
+    /// Every method.
+    pub const ALL: &[Method] = &[
+        Method::Smooth,
+        Method::Dictionary,
+        Method::NdfMaps,
+        Method::Lobes,
+        Method::Surface,
+        Method::Environment,
+        Method::AreaLight,
+        Method::PlainLtc,
+    ];
+
     fn facts(self) -> Facts {
         match self {
             Method::Smooth => Facts { name: "smooth", light: LightKind::Sun, baseline: None, has_map: false },

@@ -1,13 +1,26 @@
 //! A pack of each method, baked small, on the GPU; and a wall in its light.
 
 use glam::Vec3;
+use glint_bake_core::area_light::{self, AreaLightOptions};
 use glint_bake_core::dictionary::{self, DictionaryOptions, quality};
+use glint_bake_core::environment::image::{EnvironmentImage, direction as direction_at};
+use glint_bake_core::environment::{self, EnvironmentOptions};
+use glint_bake_core::lobes::{self, LobesOptions};
+use glint_bake_core::ndf_maps::bake::NdfMapsOptions;
+use glint_bake_core::ndf_maps::placement::{self, PlacementOptions, StochasticOptions};
+use glint_bake_core::ndf_maps::{self, eval};
+use glint_bake_core::normal_map::NormalMap;
+use glint_bake_core::progress::Silent;
+use glint_bake_core::surface;
+use glint_bake_core::synthesis::{SynthesisOptions, Target};
+use glint_formats::ndf_maps::Wrap;
 use glint_formats::{Codec, Limits, Pack, PackBuilder, Section};
 use glint_view::gpu::Gpu;
 use glint_view::render::{Camera, Method, Renderer, View, picture};
 use glint_view::scene::{Mesh, Orbit};
 use glint_view::settings::Settings;
 use glint_view::subjects::Subjects;
+use std::sync::OnceLock;
 
 fn pack(sections: Vec<Section>) -> Pack {
     let mut builder = PackBuilder::new();
@@ -23,22 +36,101 @@ fn dictionary_pack() -> Pack {
     pack(dictionary::sections::to_sections("glitter", &baked, quality::measure(&baked), Codec::None))
 }
 
-/// Every method's subjects.
+/// Waves, scratched.
+fn map(width: u32, height: u32) -> NormalMap {
+    let texel = |at: u32| {
+        let (x, y) = ((at % width) as f32 / width as f32, (at / width) as f32 / height as f32);
+        let wave = |k: f32| (std::f32::consts::TAU * k).sin();
+        let scratch = if (7 * (at % width) + 3 * (at / width)).is_multiple_of(11) { 0.1 } else { 0.0 };
+        [0.2 * wave(2.0 * x + y) + scratch, 0.15 * wave(3.0 * y - 2.0 * x) * wave(3.0 * x) - 0.5 * scratch]
+    };
+    NormalMap { width, height, wrap: Wrap::Repeat, projected: (0..width * height).map(texel).collect() }
+}
+
+fn ndf_maps_pack() -> Pack {
+    let map = map(12, 12);
+    let options = NdfMapsOptions { roughness: 0.05, max_error: 0.03, ..NdfMapsOptions::default() };
+    let stochastic = StochasticOptions { palette: 8, cells: 8, ..StochasticOptions::default() };
+    let placements = [PlacementOptions::Tiled(Default::default()), PlacementOptions::Stochastic(stochastic)];
+    let sections = ["tiled", "stochastic"].into_iter().zip(placements).flat_map(|(name, placement)| {
+        let placement = placement::bake(&map, options.roughness, &placement).unwrap();
+        let maps = ndf_maps::bake::bake(&map, &options, &Silent).unwrap();
+        ndf_maps::sections::to_sections(name, &eval::Material { maps, placement }, Codec::None)
+    });
+    pack(sections.collect())
+}
+
+fn lobes_pack() -> Pack {
+    let baked = lobes::bake(&map(64, 64), &LobesOptions::default(), &Silent).unwrap();
+    pack(lobes::sections::to_sections("waves", &baked, Codec::None))
+}
+
+fn surface_pack() -> Pack {
+    let options = SynthesisOptions {
+        target: Target::Patches { width: 256, height: 256 },
+        patch: 32,
+        overlap: 4,
+        ..Default::default()
+    };
+    let baked = surface::bake(&map(112, 128), &LobesOptions::default(), &options, &Silent).unwrap();
+    pack(surface::sections::to_sections("patches", &baked, Codec::None))
+}
+
+fn environment_pack() -> Pack {
+    const HEIGHT: u32 = 32;
+    let mut pixels = Vec::new();
+    for y in 0..HEIGHT {
+        for x in 0..2 * HEIGHT {
+            let longitude = std::f64::consts::PI * ((f64::from(x) + 0.5) / f64::from(HEIGHT) - 1.0);
+            let latitude = std::f64::consts::PI * (0.5 - (f64::from(y) + 0.5) / f64::from(HEIGHT));
+            let d = direction_at(longitude, latitude.sin());
+            let is_lamp = (9.0 * d.x).sin() * (7.0 * d.z).cos() > 0.85;
+            pixels.push(if is_lamp { [20.0, 16.0, 8.0] } else { [0.3 + 0.2 * d.y as f32, 0.3, 0.4] });
+        }
+    }
+    let image = EnvironmentImage::new(2 * HEIGHT, HEIGHT, pixels).unwrap().0;
+    let options = EnvironmentOptions { face_size: 32, measured_texels: 0, ..EnvironmentOptions::default() };
+    let baked = environment::bake(&image, 0, &options, &Silent).unwrap();
+    pack(environment::sections::to_sections("lamps", &baked, Codec::None))
+}
+
+fn area_light_pack() -> Pack {
+    let options = AreaLightOptions { anisotropic: true, ..AreaLightOptions::default() };
+    let baked = area_light::bake(&map(64, 64), &options, 1 << 30, &Silent).unwrap();
+    pack(area_light::sections::to_sections("waves", &baked, Codec::None))
+}
+
+/// Subjects of every method.
 pub fn subjects(gpu: &Gpu) -> Subjects {
-    let packs = [dictionary_pack()];
-    let packs: Vec<&Pack> = packs.iter().collect();
-    Subjects::of_packs(gpu, &packs, &[]).unwrap()
+    static PACKS: OnceLock<Vec<Pack>> = OnceLock::new();
+    let packs = PACKS.get_or_init(|| {
+        vec![dictionary_pack(), ndf_maps_pack(), lobes_pack(), surface_pack(), environment_pack(), area_light_pack()]
+    });
+    let subjects = Subjects::of_packs(gpu, &packs.iter().collect::<Vec<_>>(), &[]).unwrap();
+    for method in Method::ALL {
+        assert!(subjects.shown.iter().any(|shown| shown.method == *method), "{} is not shown", method.name());
+    }
+    subjects
 }
 
 /// A wall of height 1 that fills the picture from the distance at which a pixel is `1 / size[1]` high, lit alone by the light
-/// that the method of entry `index` is made for.
+/// that the method of entry `index` is made for. A pixel spans about two texels of maps.
 pub fn wall(subjects: &Subjects, index: usize, size: [u32; 2]) -> (Mesh, Settings, View) {
-    let mesh = Mesh::wall(40.0, 40.0);
+    const EDGE: f32 = 40.0;
+    let mesh = Mesh::wall(EDGE, EDGE);
     let mut settings = Settings::new(&subjects.shown, Orbit::fit(mesh.bounds()));
     settings.shown = index;
-    settings.lights.only(&[subjects.shown[index].method.usual_light()]);
+    let shown = &subjects.shown[index];
+    settings.lights.only(&[shown.method.usual_light()]);
     settings.lights.room_on = false;
     settings.lights.sun.direction = Vec3::new(0.1, 0.2, 1.0);
+    let corner = |x: f32, y: f32| Vec3::new(x, y, 1.5);
+    settings.lights.rect.corners = [corner(0.7, -0.2), corner(-0.4, -0.2), corner(-0.4, 0.6), corner(0.7, 0.6)];
+    // One unit of uv is the whole wall.
+    settings.uv_scale = EDGE;
+    if shown.method.has_map() {
+        settings.uv_scale *= 2.0 * size[1] as f32 / shown.material.texels_per_unit;
+    }
     let mut view = settings.view(&subjects.shown, size);
     view.scene.camera = camera(1.0);
     (mesh, settings, view)
