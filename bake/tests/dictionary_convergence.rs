@@ -117,10 +117,10 @@ fn mean_over_cells_l1(tables: &Tables, m: &GlintMaterial, level: f32, cells: u32
                 let value = f64::from(
                     cell_sdf(
                         tables,
-                        &m,
+                        m,
                         cell_state(cell * 31, cell / 7, m.seed),
                         level,
-                        &slope_query(tables, &m, slope.as_vec2()),
+                        &slope_query(tables, m, slope.as_vec2()),
                     )
                     .0
                     .x,

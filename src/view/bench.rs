@@ -98,6 +98,8 @@ pub struct BenchRow {
     pub seconds: f64,
     /// That over the median of the baseline, whose frames took turns with those of the method.
     pub ratio: f64,
+    /// Instructions of the method's program as SPIR-V, all its lights and both sides of its branches.
+    pub instructions: usize,
     /// Sum over pixels of the luminance's absolute difference from the reference over the sum of the reference's.
     pub error: Option<f64>,
 }
@@ -126,6 +128,8 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
         }
     }
     let [base, own] = times.map(median);
+    let source = glint_shaders::program(shown.method.name(), &shown.files);
+    let instructions = glint_shaders::translate::spirv_instructions(&source).map_err(GpuError::Failed)?;
     let error = if settings.reference_samples > 0 {
         let small = |reference| View { size: settings.error_size, ..of(shown, reference) };
         Some(error_of(gpu, renderer, &small(false), &small(true), settings.reference_samples)?)
@@ -139,6 +143,7 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
         baseline: setup.baseline.method.name(),
         seconds: own,
         ratio: own / base,
+        instructions,
         error,
     })
 }
@@ -182,18 +187,19 @@ fn median(mut values: Vec<f64>) -> f64 {
 /// The rows as a Markdown table.
 pub fn table(rows: &[BenchRow]) -> String {
     let mut text = String::from(
-        "| method | material | seen from | ms a frame | over | ratio | error |\n| --- | --- | --- | ---: | --- | ---: | ---: |\n",
+        "| method | material | seen from | ms a frame | over | ratio | instructions | error |\n| --- | --- | --- | ---: | --- | ---: | ---: | ---: |\n",
     );
     for row in rows {
         let error = row.error.map_or("".to_owned(), |error| format!("{:.1} %", 100.0 * error));
         text.push_str(&format!(
-            "| {} | {} | {} | {:.1} | {} | {:.2} | {error} |\n",
+            "| {} | {} | {} | {:.1} | {} | {:.2} | {} | {error} |\n",
             row.method,
             row.name,
             row.view,
             1e3 * row.seconds,
             row.baseline,
-            row.ratio
+            row.ratio,
+            row.instructions
         ));
     }
     text

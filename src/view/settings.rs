@@ -59,7 +59,7 @@ impl LightSettings {
     pub fn for_camera(camera: &Orbit) -> LightSettings {
         let (centre, radius) = (camera.target, camera.radius());
         let (sun, point, middle) = if camera.is_flat() {
-            (Vec3::new(0.3, 1.2, -1.0), Vec3::new(0.5, 0.6, -0.5), Vec3::new(0.0, 0.6, -1.2))
+            (Vec3::new(0.1, 0.65, -0.8), Vec3::new(0.2, 0.6, -0.6), Vec3::new(0.0, 0.6, -1.2))
         } else {
             (Vec3::new(0.5, 0.8, 0.7), Vec3::new(0.9, 1.0, 1.3), Vec3::new(-1.0, 1.4, 1.3))
         };

@@ -111,6 +111,36 @@ fn library(methods: &[&str]) -> Vec<ShaderFile> {
         .collect()
 }
 
+/// Instructions of a program as SPIR-V, declarations left out: its length as a driver gets it, before it is optimised.
+///
+/// # Errors
+/// What naga finds wrong with the text.
+pub fn spirv_instructions(source: &str) -> Result<usize, String> {
+    let module = naga::front::wgsl::parse_str(source).map_err(|e| e.emit_to_string(source))?;
+    let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
+        .validate(&module)
+        .map_err(|e| e.emit_to_string(source))?;
+    let (module, info) = naga::back::pipeline_constants::process_overrides(&module, &info, None, &Default::default())
+        .map_err(|e| e.to_string())?;
+    let words = spv::write_vec(&module, &info, &spv::Options::default(), None).map_err(|e| e.to_string())?;
+    Ok(count_instructions(&words))
+}
+
+/// Instructions between the beginnings and ends of functions.
+fn count_instructions(words: &[u32]) -> usize {
+    const HEADER_WORDS: usize = 5;
+    const FUNCTION: u32 = 54;
+    const FUNCTION_END: u32 = 56;
+    let (mut at, mut inside, mut count) = (HEADER_WORDS, false, 0);
+    while at < words.len() {
+        let operation = words[at] & 0xffff;
+        inside = (inside || operation == FUNCTION) && operation != FUNCTION_END;
+        count += usize::from(inside);
+        at += (words[at] >> 16).max(1) as usize;
+    }
+    count
+}
+
 /// One program in another language.
 fn translate(language: Language, program: &'static Module) -> Result<Vec<u8>, TranslateError> {
     let fail = |reason: String| TranslateError { program: program.name, language, reason };
