@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 /// What the vertex shader relies on, and that triangles face outwards as their normals do.
 pub fn assert_sound(mesh: &Mesh) {
-    assert!(!mesh.indices.is_empty() && mesh.indices.len() % 3 == 0);
+    assert!(!mesh.indices.is_empty() && mesh.indices.len().is_multiple_of(3));
     for vertex in &mesh.vertices {
         let (normal, tangent) = (Vec3::from(vertex.normal), Vec3::from_slice(&vertex.tangent));
         assert!(vertex.position.iter().chain(&vertex.uv).all(|x| x.is_finite()), "{vertex:?}");
