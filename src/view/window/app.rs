@@ -21,9 +21,6 @@ use winit::window::{Window, WindowId};
 
 /// Time to the next try where a surface gave nothing to draw to.
 const PAUSE: Duration = Duration::from_millis(50);
-/// Longest sleep. Vulkan's thread for presenting reads from the same connection to an X server: an event that it reads while
-/// the loop falls asleep wakes nobody, so the loop looks for itself now and then.
-const PULSE: Duration = Duration::from_millis(200);
 /// Tries for a surface in a row that may fail.
 const MAX_TRIES: u32 = 100;
 
@@ -377,7 +374,6 @@ impl ApplicationHandler for App {
     }
 
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {
-        let pulse = Instant::now() + PULSE;
-        events.set_control_flow(ControlFlow::WaitUntil(self.wake.map_or(pulse, |wake| wake.min(pulse))));
+        events.set_control_flow(self.wake.map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
     }
 }

@@ -6,6 +6,9 @@ use crate::render::{ACCURATE, Material, Method, Overlay, SWAP_LAYERS, Shown, Ton
 use crate::settings::{Against, Settings};
 use egui::{Context, Slider, Ui};
 
+/// Width of the panel in points.
+const WIDTH: f32 = 336.0;
+
 /// What the panel tells beside what it sets.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Facts {
@@ -35,44 +38,50 @@ pub(super) fn show(
         return None;
     }
     let mut action = None;
-    // As high as the window allows: long panels scroll.
-    let height = (context.content_rect().height() - 60.0).clamp(60.0, 900.0);
-    egui::Window::new("glint-view")
-        .default_pos([8.0, 8.0])
-        .default_width(300.0)
-        .default_height(height)
-        .max_height(height)
-        .resizable(true)
-        .vscroll(true)
-        .show(context, |ui| {
+    // As high as its content where the window allows it; longer ones scroll.
+    let height = (context.content_rect().height() - 60.0).max(20.0);
+    egui::Window::new("glint-view").default_pos([8.0, 8.0]).auto_sized().show(context, |ui| {
+        egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
+            ui.set_width(WIDTH);
             ui.spacing_mut().slider_width = 120.0;
-            method(ui, settings, list);
-            section(ui, "Material", true, |ui| {
-                if let (Some(material), Some(shown)) =
-                    (settings.materials.get_mut(settings.shown), list.get(settings.shown))
-                {
-                    parameters(ui, shown.method, material);
-                }
-                ui.add(Slider::new(&mut settings.uv_scale, 0.01..=100.0).logarithmic(true).text("surface units / uv"));
-            });
-            section(ui, "Comparison", true, |ui| comparison(ui, controls, settings, list));
-            section(ui, "Display", true, |ui| display(ui, settings));
-            section(ui, "Lights", false, |ui| lights::show(ui, &mut settings.lights));
-            section(ui, "Camera and mesh", false, |ui| action = camera(ui, controls, settings, facts));
-            controls.times = section(ui, "Frame", false, |ui| frame(ui, facts));
-            ui.separator();
-            ui.horizontal(|ui| {
-                if ui.button("Save picture (S)").clicked() {
-                    action = Some(Action::Save);
-                }
-                if ui.button("Hide panel (H)").clicked() {
-                    controls.panel = false;
-                }
-            });
-            if !controls.message.is_empty() {
-                ui.label(&controls.message);
-            }
+            action = parts(ui, controls, settings, list, facts);
         });
+    });
+    action
+}
+
+fn parts(
+    ui: &mut Ui,
+    controls: &mut Controls,
+    settings: &mut Settings,
+    list: &[Shown],
+    facts: &Facts,
+) -> Option<Action> {
+    let mut action = None;
+    method(ui, settings, list);
+    section(ui, "Material", true, |ui| {
+        if let (Some(material), Some(shown)) = (settings.materials.get_mut(settings.shown), list.get(settings.shown)) {
+            parameters(ui, shown.method, material);
+        }
+        ui.add(Slider::new(&mut settings.uv_scale, 0.01..=100.0).logarithmic(true).text("surface units / uv"));
+    });
+    section(ui, "Comparison", true, |ui| comparison(ui, controls, settings, list));
+    section(ui, "Display", true, |ui| display(ui, settings));
+    section(ui, "Lights", false, |ui| lights::show(ui, &mut settings.lights));
+    section(ui, "Camera and mesh", false, |ui| action = camera(ui, controls, settings, facts));
+    controls.times = section(ui, "Frame", false, |ui| frame(ui, facts));
+    ui.separator();
+    ui.horizontal(|ui| {
+        if ui.button("Save picture (S)").clicked() {
+            action = Some(Action::Save);
+        }
+        if ui.button("Hide panel (H)").clicked() {
+            controls.panel = false;
+        }
+    });
+    if !controls.message.is_empty() {
+        ui.label(&controls.message);
+    }
     action
 }
 
