@@ -96,7 +96,7 @@ fn maps_and_environments_take_their_flags() {
     for (pack, plain, flags) in [
         ("lobes.glintpack", &["--light", "sun"][..], &["--light", "sun", "--intrinsic-roughness", "0.2"][..]),
         ("lobes.glintpack", &["--light", "sun"], &["--light", "sun", "--texels-per-unit", "3"]),
-        ("area-light.glintpack", &[], &["--lobes", "0", "--alpha", "0.4"]),
+        ("light.glintpack", &[], &["--lobes", "0", "--alpha", "0.4"]),
         ("layered.glintpack", &["--texels-per-unit", "64"], &["--texels-per-unit", "64", "--swap-layers"]),
         ("sky.glintpack", &["--shape", "sphere"], &["--shape", "sphere", "--turn", "90"]),
     ] {
@@ -122,7 +122,7 @@ fn a_turntable_goes_around() {
 fn the_list_names_what_can_be_shown_and_the_bench_measures_it() {
     let Some(folder) = folder() else { return };
     let folder = folder.path();
-    let both = ["dictionary.glintpack", "area-light.glintpack"];
+    let both = ["dictionary.glintpack", "light.glintpack"];
     let listed = view(folder, &[&both[..], &["--list"]].concat()).ok().stdout;
     for part in ["adapter", "dictionary:", "area-light:", "plain-ltc:", "smooth"] {
         assert!(listed.contains(part), "{listed}");
@@ -143,6 +143,7 @@ fn what_cannot_be_shown_is_refused() {
         assert!(refused.stderr.contains(part), "{args:?}: {}", refused.stderr);
     };
     refuses(&[], 2, "PACK");
+    assert!(view(folder, &["--version"]).ok().stdout.contains("reads 1.x"));
     refuses(&["none.glintpack", "--list"], 3, "none.glintpack");
     refuses(&["flakes.png", "--list"], 4, "flakes.png");
     refuses(&["dictionary.glintpack", "--headless", "none/a.png"], 3, "none");
