@@ -41,6 +41,12 @@ report MAPS="../shared/data/tiny/brushed_16x16.png":
     cargo run --release --example lobes_report -- "${GLINT_DATA:-../shared/data}" --svg docs/lobes-report.svg > docs/lobes-report.md
     cargo run --release --example surface_report -- "${GLINT_DATA:-../shared/data}" > docs/surface-report.md
 
+# Measure the viewer's frame times anew (an adapter, and minutes on a software one), and draw its gallery (ImageMagick).
+view-report *ARGS:
+    cargo build --release --features view --bins
+    scripts/view_report.sh {{ARGS}} > docs/viewer-report.md
+    scripts/gallery.sh
+
 # Fit the LTC tables of area lights anew; they come with the program, and a test checks that this gives the same bytes.
 ltc-tables:
     cargo run --release -p glint-bake-core --example fit_ltc_tables bake/src/area_light/ltc_tables.bin

@@ -10,11 +10,11 @@ work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 
 bake() { "$bin/glint-bake" "$@" -q; }
-# draw NAME PACK... FLAGS...
+# draw SHOT PACK... FLAGS...
 draw() {
-    name="$1"
+    shot="$1"
     shift
-    "$bin/glint-view" "$@" --size 320x200 --headless "$work/$name.png" -q
+    "$bin/glint-view" "$@" --size 320x200 --headless "$work/$shot.png" -q
 }
 normals="$data/normals"
 leather="$normals/leather_008_3dtextures.jpg"
