@@ -17,7 +17,9 @@ for k in 32 16; do
 done
 bake lobes "$data/normals/scratched_gold_cgbookcase_rgba.png" --crop 256x256+0+0 --synthesize 4096x4096 -o "$work/surface.glintpack"
 for k in 4 8; do
-    bake environment "$data/hdri/dancing_hall_1k.hdr" --levels $k --name "dancing hall, K = $k" -o "$work/sky$k.glintpack"
+    # A material is named after its file.
+    cp "$data/hdri/dancing_hall_1k.hdr" "$work/dancing_hall_K$k.hdr"
+    bake environment "$work/dancing_hall_K$k.hdr" --levels $k -o "$work/sky$k.glintpack"
 done
 bake area-light "$data/normals/leather_008_3dtextures.jpg" -o "$work/round.glintpack"
 bake area-light "$data/normals/brushed_aluminium_godot_745.png" --anisotropic -o "$work/brushed.glintpack"

@@ -65,7 +65,7 @@ impl LightSettings {
         };
         LightSettings {
             sun_on: true,
-            sun: Sun { direction: sun, irradiance: Vec3::splat(3.0) },
+            sun: Sun { direction: sun, irradiance: Vec3::splat(1.0) },
             points_on: false,
             points: vec![PointLight {
                 position: centre + point * radius,
@@ -105,7 +105,7 @@ fn rect_facing(target: Vec3, middle: Vec3, half_width: f32, half_height: f32) ->
     let (across, up) = (right * half_width, front.cross(right) * half_height);
     RectLight {
         corners: [middle - across - up, middle + across - up, middle + across + up, middle - across + up],
-        radiance: Vec3::splat(8.0),
+        radiance: Vec3::splat(4.0),
         two_sided: false,
     }
 }

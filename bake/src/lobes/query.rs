@@ -40,8 +40,8 @@ pub struct QuerySettings {
 }
 
 impl QuerySettings {
-    /// Few lobes, for pictures: about three cells of the map's lobes, or a dozen boxes, a footprint. At 32 lobes a cell, mean
-    /// E₁ is 3 to 10 % on most maps (1 to 3 % by default), to 23 % on a steep weave, to 38 % under a texel of flakes.
+    /// Few lobes, for pictures: about three cells of the map's lobes, or a dozen boxes, a footprint. What that costs in error
+    /// stands in docs/viewer-report.md beside the time.
     pub fn realtime() -> QuerySettings {
         QuerySettings {
             cell_sigmas: 0.18,
