@@ -117,9 +117,8 @@ fn library(methods: &[&str]) -> Vec<ShaderFile> {
 /// What naga finds wrong with the text.
 pub fn spirv_instructions(source: &str) -> Result<usize, String> {
     let module = naga::front::wgsl::parse_str(source).map_err(|e| e.emit_to_string(source))?;
-    let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
-        .validate(&module)
-        .map_err(|e| e.emit_to_string(source))?;
+    let info =
+        Validator::new(ValidationFlags::all(), CAPABILITIES).validate(&module).map_err(|e| e.emit_to_string(source))?;
     let (module, info) = naga::back::pipeline_constants::process_overrides(&module, &info, None, &Default::default())
         .map_err(|e| e.to_string())?;
     let words = spv::write_vec(&module, &info, &spv::Options::default(), None).map_err(|e| e.to_string())?;

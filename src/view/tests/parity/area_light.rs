@@ -1,6 +1,6 @@
 //! Area lights: what lies under a footprint, rectangles over its lobes, and GGX for directions.
 
-use crate::support::{QUERIES, compare, gpu, random};
+use crate::support::{QUERIES, compare, gpu, log_uniform, random, real_map};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
 use glint_bake_core::area_light::eval::{
@@ -50,10 +50,6 @@ struct Answer {
     major: f32,
     minor: f32,
     axis: Vec2,
-}
-
-fn log_uniform(rng: &mut impl Rng, low: f32, high: f32) -> f32 {
-    low * (high / low).powf(rng.random::<f32>())
 }
 
 fn between(rng: &mut impl Rng, low: f32, high: f32) -> f32 {
@@ -225,20 +221,7 @@ fn area_lights_of_the_shader_are_those_of_the_cpu() {
 #[test]
 fn a_real_map_gives_the_same_on_both() {
     let Some(gpu) = gpu() else { return };
-    let folder = std::env::var_os("GLINT_DATA").map_or_else(
-        || std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        std::path::PathBuf::from,
-    );
-    let path = folder.join("normals/technical_fabric_sheencloth_256_rgba.png");
-    if !path.is_file() {
-        eprintln!("skipped: {} is not there; set GLINT_DATA", path.display());
-        return;
-    }
-    let image = image::open(&path).unwrap().to_rgb8();
-    let map = map(image.width(), image.height(), Wrap::Repeat, |i, j| {
-        let normal = Vec3::from_array(image.get_pixel(i, j).0.map(f32::from)) / 127.5 - 1.0;
-        normal.normalize().truncate().into()
-    });
+    let Some(map) = real_map("normals/technical_fabric_sheencloth_256_rgba.png") else { return };
     check("area light, fabric", gpu, &[baked(&map, true, NormalStorage::F16)]);
 }
 

@@ -4,7 +4,7 @@
 //! Draws flip between neighbouring counts where the random word lies at a step, as `counting.rs` says.
 
 use crate::counting::{MAX_FLIPPED, beside};
-use crate::support::{QUERIES, agree, compare, gpu, log_uniform, random};
+use crate::support::{QUERIES, agree, compare, gpu, log_uniform, random, real_file};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
 use glint_bake_core::counting::multinomial::tree_leaves;
@@ -244,12 +244,8 @@ fn glints_of_the_shader_are_those_of_the_cpu() {
 #[test]
 fn a_real_environment_agrees_too() {
     let Some(gpu) = gpu() else { return };
-    let data = std::env::var_os("GLINT_DATA").map_or("../../../shared/data".into(), std::path::PathBuf::from);
-    let path = data.join("hdri/dancing_hall_1k.hdr");
-    let Ok(pixels) = image::open(&path) else {
-        eprintln!("skipped: no {}; set GLINT_DATA", path.display());
-        return;
-    };
+    let Some(path) = real_file("hdri/dancing_hall_1k.hdr") else { return };
+    let pixels = image::open(path).unwrap();
     let pixels = pixels.into_rgb32f();
     let (width, height) = pixels.dimensions();
     let image = EnvironmentImage::new(width, height, pixels.pixels().map(|pixel| pixel.0).collect()).unwrap().0;

@@ -1,8 +1,8 @@
 //! P-NDFs of a map's lobes.
 
-use crate::support::{QUERIES, compare, gpu, random};
+use crate::support::{QUERIES, compare, gpu, log_uniform, random, real_map};
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec2, Vec2, Vec3};
+use glam::{DVec2, Vec2};
 use glint_bake_core::footprint::Footprint;
 use glint_bake_core::lobes::options::NormalsChoice;
 use glint_bake_core::lobes::query::QuerySettings;
@@ -69,10 +69,6 @@ struct Query {
 }
 
 /// A number whose logarithm is uniform.
-pub fn log_uniform(rng: &mut impl Rng, low: f32, high: f32) -> f32 {
-    low * (high / low).powf(rng.random::<f32>())
-}
-
 /// Two standard normal numbers.
 fn normals(rng: &mut impl Rng) -> Vec2 {
     let radius = (-2.0 * (1.0 - rng.random::<f32>()).ln()).sqrt();
@@ -198,19 +194,7 @@ fn the_density_of_the_shader_is_that_of_the_cpu() {
 #[test]
 fn a_real_map_gives_the_same_on_both() {
     let Some(gpu) = gpu() else { return };
-    let folder = std::env::var_os("GLINT_DATA").map_or_else(
-        || std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        std::path::PathBuf::from,
-    );
-    let path = folder.join("normals/carpaint_flakes_khronos_128.png");
-    if !path.is_file() {
-        eprintln!("skipped: {} is not there; set GLINT_DATA", path.display());
-        return;
-    }
-    let image = image::open(&path).unwrap().to_rgb8();
-    let normal = |rgb: &image::Rgb<u8>| (Vec3::from_array(rgb.0.map(f32::from)) / 127.5 - 1.0).normalize().truncate();
-    let projected = image.pixels().map(|rgb| normal(rgb).into()).collect();
-    let map = NormalMap { width: image.width(), height: image.height(), wrap: Wrap::Repeat, projected };
+    let Some(map) = real_map("normals/carpaint_flakes_khronos_128.png") else { return };
     let options = LobesOptions { lobes_per_cell: 16, footprints: 0, ..LobesOptions::default() };
     let lobes = bake(&map, &options, &Silent).unwrap();
     compare("lobes, flakes", answers(gpu, &lobes, &mut random(8), QUERIES).into_iter());

@@ -1,8 +1,8 @@
 //! NDF maps of tiny examples, tiled and stochastic, in one or two layers.
 
-use crate::support::{QUERIES, compare, gpu, random};
+use crate::support::{QUERIES, compare, gpu, random, real_map};
 use bytemuck::{Pod, Zeroable};
-use glam::{DMat2, DVec2, Vec2, Vec3};
+use glam::{DMat2, DVec2, Vec2};
 use glint_bake_core::footprint::Footprint;
 use glint_bake_core::ndf_maps::bake::{self, NdfMapsOptions};
 use glint_bake_core::ndf_maps::eval::{LobeTerm, Material, matrix};
@@ -230,19 +230,7 @@ fn the_density_of_the_shader_is_that_of_the_cpu() {
 #[test]
 fn a_real_map_gives_the_same_on_both() {
     let Some(gpu) = gpu() else { return };
-    let folder = std::env::var_os("GLINT_DATA").map_or_else(
-        || std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        std::path::PathBuf::from,
-    );
-    let path = folder.join("tiny/scratches_32x32.png");
-    if !path.is_file() {
-        eprintln!("skipped: {} is not there; set GLINT_DATA", path.display());
-        return;
-    }
-    let image = image::open(&path).unwrap().to_rgb8();
-    let normal = |rgb: &image::Rgb<u8>| (Vec3::from_array(rgb.0.map(f32::from)) / 127.5 - 1.0).normalize().truncate();
-    let projected = image.pixels().map(|rgb| normal(rgb).into()).collect();
-    let map = NormalMap { width: image.width(), height: image.height(), wrap: Wrap::Repeat, projected };
+    let Some(map) = real_map("tiny/scratches_32x32.png") else { return };
     let maps = NdfMapsOptions::default();
     let pair = [
         Sample::new(map.clone(), maps.clone(), tiled(0.0, 1.0, 0.0)),

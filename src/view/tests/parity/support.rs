@@ -1,8 +1,12 @@
 //! The adapter, random queries, and the comparison of answers.
 
 pub use crate::adapter::gpu;
+use glam::Vec3;
+use glint_bake_core::normal_map::NormalMap;
+use glint_formats::ndf_maps::Wrap;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use std::path::{Path, PathBuf};
 
 /// Queries a method, at least.
 pub const QUERIES: usize = 10_000;
@@ -15,6 +19,25 @@ pub fn random(seed: u64) -> Pcg64 {
 /// A number whose logarithm is uniform.
 pub fn log_uniform(rng: &mut impl Rng, low: f32, high: f32) -> f32 {
     low * (high / low).powf(rng.random::<f32>())
+}
+
+/// A file of GLINT_DATA, or nothing where it is missing.
+pub fn real_file(name: &str) -> Option<PathBuf> {
+    let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let path = std::env::var_os("GLINT_DATA").map_or_else(default, PathBuf::from).join(name);
+    if !path.is_file() {
+        eprintln!("skipped: {} is not there; set GLINT_DATA", path.display());
+        return None;
+    }
+    Some(path)
+}
+
+/// A normal map of GLINT_DATA that repeats.
+pub fn real_map(name: &str) -> Option<NormalMap> {
+    let image = image::open(real_file(name)?).unwrap().to_rgb8();
+    let normal = |rgb: &image::Rgb<u8>| (Vec3::from_array(rgb.0.map(f32::from)) / 127.5 - 1.0).normalize().truncate();
+    let projected = image.pixels().map(|rgb| normal(rgb).into()).collect();
+    Some(NormalMap { width: image.width(), height: image.height(), wrap: Wrap::Repeat, projected })
 }
 
 /// Whether two numbers agree: 1e-3 of the larger, and 1e-5 where both are small.

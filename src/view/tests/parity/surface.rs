@@ -1,7 +1,7 @@
 //! P-NDFs of a surface synthesised by patches.
 
-use crate::lobes::{MOST_LOBES, Place, Settings, log_uniform, place, settings, unit, waves};
-use crate::support::{QUERIES, compare, gpu, random};
+use crate::lobes::{MOST_LOBES, Place, Settings, place, settings, unit, waves};
+use crate::support::{QUERIES, compare, gpu, log_uniform, random};
 use bytemuck::{Pod, Zeroable};
 use glint_bake_core::lobes::LobesOptions;
 use glint_bake_core::lobes::options::NormalsChoice;
