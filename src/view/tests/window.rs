@@ -68,7 +68,9 @@ impl Session {
     fn start(flags: &[&str]) -> Session {
         let size = format!("{}x{}x24", SCREEN[0], SCREEN[1]);
         let mut server = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", &size, "-nolisten", "tcp"])
+            // Without -noreset the server starts anew whenever its last client, which may be xdotool, has gone, and
+            // refuses whoever comes at that moment.
+            .args(["-displayfd", "1", "-screen", "0", &size, "-nolisten", "tcp", "-noreset"])
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
