@@ -1,9 +1,9 @@
 //! Time of each method over that of its smooth baseline, in one run, with the error against its reference beside it.
 
 use crate::gpu::{Gpu, GpuError};
-use crate::render::{Camera, Compare, Method, Renderer, Shown, Side, View, picture};
+use crate::render::{Camera, Compare, LightKind, Method, Renderer, Shown, Side, View, picture};
 use crate::scene::Mesh;
-use crate::settings::{Against, Settings};
+use crate::settings::{Against, Settings, rect_facing};
 use crate::subjects::Subjects;
 use glam::Vec3;
 
@@ -73,6 +73,8 @@ impl Setup {
                 let mut settings = settings.clone();
                 // The mirror image of the camera, so that the highlight is in the picture.
                 settings.lights.sun.direction = direction * Vec3::new(1.0, -1.0, 1.0) + Vec3::new(0.1, 0.1, 0.0);
+                let mirrored = direction * Vec3::new(1.0, -1.0, 1.0);
+                settings.lights.rect = rect_facing(Vec3::ZERO, mirrored * 1.5, 0.5, 0.35);
                 let mut view = settings.view(list, size);
                 let position = direction * distance;
                 view.scene.camera = Camera { position, target: Vec3::ZERO, field_of_view: FIELD_OF_VIEW, near: 0.01 };
@@ -130,7 +132,9 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
     let [base, own] = times.map(median);
     let source = glint_shaders::program(shown.method.name(), &shown.files);
     let instructions = glint_shaders::translate::spirv_instructions(&source).map_err(GpuError::Failed)?;
-    let error = if settings.reference_samples > 0 {
+    // Glints under an environment have no reference but their mean over seeds.
+    let has_reference = shown.method.usual_light() != LightKind::Environment;
+    let error = if has_reference && settings.reference_samples > 0 {
         let small = |reference| View { size: settings.error_size, ..of(shown, reference) };
         Some(error_of(gpu, renderer, &small(false), &small(true), settings.reference_samples)?)
     } else {

@@ -99,7 +99,7 @@ impl LightSettings {
 }
 
 /// A rectangle around `middle` that faces `target`, upright, of this half width and half height.
-fn rect_facing(target: Vec3, middle: Vec3, half_width: f32, half_height: f32) -> RectLight {
+pub(crate) fn rect_facing(target: Vec3, middle: Vec3, half_width: f32, half_height: f32) -> RectLight {
     let front = (target - middle).normalize_or(Vec3::NEG_Y);
     let right = Vec3::Y.cross(front).normalize_or(Vec3::X);
     let (across, up) = (right * half_width, front.cross(right) * half_height);
