@@ -30,23 +30,23 @@ cat <<'HEAD'
 Written by `scripts/view_report.sh > docs/viewer-report.md` (arguments go to `glint-view --bench`, as in `--size 960x540 --frames 9`);
 do not edit. A wall fills the picture, from straight ahead (a pixel spans two texels of maps) and from 60° to the side, in the
 light that the method is made for. *ratio*: median time of the surface pass over that of the baseline, whose frames take turns with the method's.
-*error*: sum over pixels of the luminance's difference from the method's reference over the sum of the reference's; single
-pixels, not their distribution, so sparse glints weigh heavily, and the reference's own noise of 256 samples is in it. *instructions*:
+*error*: sum over pixels of the luminance's difference from the method's reference over the sum of the reference's; of single
+pixels, not of their distribution, so sparse glints weigh heavily, and the reference's own noise of 256 samples is in it. *instructions*:
 of the whole program as SPIR-V, all lights and both sides of branches.
 
 What bounds each, a pixel:
 
 | method | loads and fetches | arithmetic |
 | --- | --- | --- |
-| smooth | none | one exponential |
-| dictionary | two 4-byte loads a cell; 8 to 20 cells of two levels, more where footprints are long | a cell: 14 integer products of the hash, a sine and a cosine, an exponential |
-| NDF maps | up to nine loads of a word a tile, up to some 32 tiles; one of the mask outside the highlight | a tile: three weights either way; a box: two error functions |
-| lobes, surfaces | one 16-byte load a lobe, some tens of lobes | a lobe: a 2 × 2 inverse, two exponentials |
-| environment | smooth: a cube and a table; one cube more for four levels, two for eight | 24 hashes with exponentials and three binomial draws for K = 4 |
-| area light | as plain LTC: one map (two with directions), two tables | one power, two roots more than plain LTC, once a lobe |
+| smooth | none | an exponential |
+| dictionary | two 4-byte loads a cell, for all cells under the footprint on two levels | a cell: its hash, a sine and a cosine, an exponential |
+| NDF maps | nine texels a tile, for all tiles under the footprint; one word of a mask outside the highlight | a tile: two splines; a box: four error functions |
+| lobes, surfaces | one 16-byte load a lobe, for all lobes under the footprint | a lobe: a 2 × 2 inverse, two exponentials |
+| environment | smooth: a cube and a table; glints: one cube more for every four levels | hashes with exponentials for the words, a binomial draw a node of the tree of levels |
+| area light | as plain LTC: one map (two with directions), two tables | a power and two roots more than plain LTC, once a lobe |
 
-A software adapter has no texture units, executes both sides of branches for eight pixels at a time, and spends on the smooth
-baseline little but its arithmetic, where a GPU spends the frame's fixed costs. So its ratios are of arithmetic, and do not stand for a GPU's.
+A software adapter has no texture units, executes both sides of branches for several pixels at a time, and has no fixed costs of a
+frame beside the smooth baseline's arithmetic. So its ratios are of arithmetic, and do not stand for a GPU's.
 
 HEAD
 # One table: the header of the first run and the rows of all.

@@ -55,6 +55,8 @@ fn wide_footprints_are_no_worse_than_others() {
     }
 }
 
+/// A mixture of two normalised densities is never worse than the worse of the two; what fails here is one whose weights do
+/// not add up to 1, or a level that is not normalised.
 #[test]
 fn levels_of_real_maps_pass_into_each_other_without_a_jump() {
     let Some(data) = data() else { return };

@@ -71,6 +71,9 @@ impl Default for QuerySettings {
     }
 }
 
+/// Cells a footprint may visit, over π and less h² (see [`BakedLobes::lod`]), at least: a map of a texel would allow none.
+const LEAST_BUDGET: f32 = 0.05;
+
 /// What a level is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Detail {
@@ -219,7 +222,10 @@ impl BakedLobes {
         // Cells of edge c = σ / cell_sigmas that the footprint's ellipse touches: about π (r a + h c) (r b + h c) / c² with
         // its half axes r a, r b and h c half a cell's mean width. Solved for the σ at which they are `max_cells`.
         let (a, b, h) = (settings.reach * frame.major, settings.reach * frame.minor, 0.45);
-        let budget = settings.max_cells / std::f32::consts::PI - h * h;
+        // A map narrower than the finest cells cuts them short, and as many times more of them lie under a footprint.
+        let whole = |side: u32| (side as f32 / finest).min(1.0);
+        let allowed = settings.max_cells * whole(self.params.width) * whole(self.params.height);
+        let budget = (allowed / std::f32::consts::PI - h * h).max(LEAST_BUDGET);
         let edge = (h * (a + b) + (h * h * (a + b) * (a + b) + 4.0 * budget * a * b).sqrt()) / (2.0 * budget);
         let sigma = frame.minor.max(edge * settings.cell_sigmas);
         let cells = 1.0 + libm::log2f(sigma / (finest * settings.cell_sigmas));

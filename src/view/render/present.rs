@@ -74,7 +74,7 @@ pub(super) enum Show {
 /// `Present` of view_present.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct PresentUniform {
+pub(super) struct PresentUniform {
     exposure: f32,
     tone: u32,
     show: u32,
@@ -97,24 +97,30 @@ impl Present {
         Ok(Present { format, pipeline: full_screen::pipeline(gpu, "display", format)? })
     }
 
-    #[allow(clippy::too_many_arguments, reason = "one call; a struct of these would only name them twice")]
+    /// Shows one or both of two textures on `target`.
     pub fn draw(
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
+        values: &PresentUniform,
         sources: [&wgpu::TextureView; 2],
-        show: Show,
-        display: &Display,
         target: &wgpu::TextureView,
         timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) {
+        let uniform = gpu.buffer(wgpu::BufferUsages::UNIFORM, bytemuck::bytes_of(values));
+        full_screen::draw(gpu, encoder, &self.pipeline, &uniform, sources, target, timestamps);
+    }
+}
+
+impl PresentUniform {
+    pub fn new(show: Show, display: &Display) -> PresentUniform {
         let (show, split) = match show {
             Show::Left => (0, 0.0),
             Show::Split(at) => (1, at),
             Show::Error => (2, 0.0),
         };
         let [overlay_low, overlay_high] = display.overlay.range();
-        let values = PresentUniform {
+        PresentUniform {
             exposure: display.exposure,
             tone: u32::from(display.tone == ToneMapping::Linear),
             show,
@@ -123,8 +129,6 @@ impl Present {
             overlay_low,
             overlay_high,
             unused: 0.0,
-        };
-        let uniform = gpu.buffer(wgpu::BufferUsages::UNIFORM, bytemuck::bytes_of(&values));
-        full_screen::draw(gpu, encoder, &self.pipeline, &uniform, sources, target, timestamps);
+        }
     }
 }

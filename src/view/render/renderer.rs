@@ -2,7 +2,7 @@
 
 use super::accumulate::Accumulate;
 use super::pipelines::{Key, Pipelines};
-use super::present::{Display, Present, Show};
+use super::present::{Display, Present, PresentUniform, Show};
 use super::shown::Shown;
 use super::targets::{Targets, view};
 use super::timing::Timing;
@@ -281,7 +281,8 @@ impl Renderer {
         let sources = [shown(0), shown(1)];
         self.passes.push("display");
         let timestamps = self.timing.next();
-        present.draw(gpu, encoder, [&sources[0], &sources[1]], show, &view_of.display, target, timestamps);
+        let values = PresentUniform::new(show, &view_of.display);
+        present.draw(gpu, encoder, &values, [&sources[0], &sources[1]], target, timestamps);
     }
 
     /// Seconds of each pass of the last frame, where the device has timestamps; waits for it.

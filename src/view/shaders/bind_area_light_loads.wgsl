@@ -26,70 +26,41 @@ fn area_light_cell(position: vec2f, mip: u32) -> AreaLightCell {
     return AreaLightCell(area_light_wrapped(i, vec2i(size)), area_light_wrapped(i + 1, vec2i(size)), mip, p - cell);
 }
 
-fn area_light_bilinear_normals(position: vec2f, mip: u32) -> vec4f {
+fn area_light_bilinear(map: texture_2d<f32>, position: vec2f, mip: u32) -> vec4f {
     let c = area_light_cell(position, mip);
-    let low = mix(
-        textureLoad(area_light_normals, c.low, c.mip),
-        textureLoad(area_light_normals, vec2i(c.high.x, c.low.y), c.mip),
-        c.f.x,
-    );
-    let high = mix(
-        textureLoad(area_light_normals, vec2i(c.low.x, c.high.y), c.mip),
-        textureLoad(area_light_normals, c.high, c.mip),
-        c.f.x,
-    );
+    let low = mix(textureLoad(map, c.low, c.mip), textureLoad(map, vec2i(c.high.x, c.low.y), c.mip), c.f.x);
+    let high = mix(textureLoad(map, vec2i(c.low.x, c.high.y), c.mip), textureLoad(map, c.high, c.mip), c.f.x);
     return mix(low, high, c.f.y);
 }
 
-fn area_light_bilinear_roughness(position: vec2f, mip: u32) -> vec4f {
-    let c = area_light_cell(position, mip);
-    let low = mix(
-        textureLoad(area_light_roughness, c.low, c.mip),
-        textureLoad(area_light_roughness, vec2i(c.high.x, c.low.y), c.mip),
-        c.f.x,
-    );
-    let high = mix(
-        textureLoad(area_light_roughness, vec2i(c.low.x, c.high.y), c.mip),
-        textureLoad(area_light_roughness, c.high, c.mip),
-        c.f.x,
-    );
-    return mix(low, high, c.f.y);
+fn area_light_trilinear(map: texture_2d<f32>, position: vec2f, level: f32) -> vec4f {
+    let low = min(u32(level), area_light.maps.mips - 1u);
+    let high = min(low + 1u, area_light.maps.mips - 1u);
+    let near = area_light_bilinear(map, position, low);
+    return mix(near, area_light_bilinear(map, position, high), level - f32(low));
+}
+
+fn area_light_table(table: texture_2d<f32>, place: vec2f) -> vec4f {
+    let p = clamp(place, vec2f(0.0), vec2f(GLINT_LTC_SIZE - 1.0));
+    let i = min(vec2u(p), vec2u(u32(GLINT_LTC_SIZE) - 2u));
+    let f = p - vec2f(i);
+    let low = mix(textureLoad(table, i, 0), textureLoad(table, i + vec2u(1u, 0u), 0), f.x);
+    let high = mix(textureLoad(table, i + vec2u(0u, 1u), 0), textureLoad(table, i + vec2u(1u), 0), f.x);
+    return mix(low, high, f.y);
 }
 
 fn glint_area_light_normals(position: vec2f, level: f32) -> vec4f {
-    let low = min(u32(level), area_light.maps.mips - 1u);
-    let high = min(low + 1u, area_light.maps.mips - 1u);
-    let near = area_light_bilinear_normals(position, low);
-    return mix(near, area_light_bilinear_normals(position, high), level - f32(low));
+    return area_light_trilinear(area_light_normals, position, level);
 }
 
 fn glint_area_light_roughness(position: vec2f, level: f32) -> vec4f {
-    let low = min(u32(level), area_light.maps.mips - 1u);
-    let high = min(low + 1u, area_light.maps.mips - 1u);
-    let near = area_light_bilinear_roughness(position, low);
-    return mix(near, area_light_bilinear_roughness(position, high), level - f32(low));
+    return area_light_trilinear(area_light_roughness, position, level);
 }
 
 fn glint_ltc_inverse(place: vec2f) -> vec4f {
-    let p = clamp(place, vec2f(0.0), vec2f(GLINT_LTC_SIZE - 1.0));
-    let i = min(vec2u(p), vec2u(u32(GLINT_LTC_SIZE) - 2u));
-    let f = p - vec2f(i);
-    let low = mix(
-        textureLoad(area_light_inverse, i, 0), textureLoad(area_light_inverse, i + vec2u(1u, 0u), 0), f.x,
-    );
-    let high = mix(
-        textureLoad(area_light_inverse, i + vec2u(0u, 1u), 0), textureLoad(area_light_inverse, i + vec2u(1u), 0), f.x,
-    );
-    return mix(low, high, f.y);
+    return area_light_table(area_light_inverse, place);
 }
 
 fn glint_ltc_terms(place: vec2f) -> vec4f {
-    let p = clamp(place, vec2f(0.0), vec2f(GLINT_LTC_SIZE - 1.0));
-    let i = min(vec2u(p), vec2u(u32(GLINT_LTC_SIZE) - 2u));
-    let f = p - vec2f(i);
-    let low = mix(textureLoad(area_light_terms, i, 0), textureLoad(area_light_terms, i + vec2u(1u, 0u), 0), f.x);
-    let high = mix(
-        textureLoad(area_light_terms, i + vec2u(0u, 1u), 0), textureLoad(area_light_terms, i + vec2u(1u), 0), f.x,
-    );
-    return mix(low, high, f.y);
+    return area_light_table(area_light_terms, place);
 }
