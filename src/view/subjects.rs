@@ -22,11 +22,11 @@ pub struct Subjects {
 }
 
 impl Subjects {
-    /// What the user should know: which data was converted for this adapter.
-    pub fn notes(&self) -> Vec<&str> {
+    /// What the user should know: which data was converted for this adapter or left out.
+    pub fn notes(&self) -> Vec<String> {
         let resources = self.shown.iter().map(|shown| &shown.data).chain(&self.environment);
-        let mut notes: Vec<&str> = resources.flat_map(|data| data.notes.iter().map(String::as_str)).collect();
-        notes.extend(self.left_out.iter().map(String::as_str));
+        let mut notes: Vec<String> = resources.flat_map(|data| data.notes.clone()).collect();
+        notes.extend(self.left_out.clone());
         notes.sort_unstable();
         notes.dedup();
         notes
@@ -44,8 +44,7 @@ impl Subjects {
             subjects.add_environments(gpu, pack)?;
             subjects.add_area_lights(gpu, pack)?;
         }
-        let empty = ResourceSet::default().finish(gpu);
-        subjects.add(Method::Smooth, "", empty, Material::default());
+        subjects.add(Method::Smooth, "", &nothing(gpu), Material::default());
         Ok(subjects)
     }
 
@@ -58,13 +57,9 @@ impl Subjects {
         Ok(renderer)
     }
 
-    fn add(&mut self, method: Method, name: &str, data: Resources, material: Material) {
-        self.share(method, name, &Rc::new(data), material);
-    }
-
-    fn share(&mut self, method: Method, name: &str, data: &Rc<Resources>, material: Material) {
+    fn add(&mut self, method: Method, name: &str, data: &Rc<Resources>, material: Material) -> &mut Shown {
         let (name, data) = (name.to_owned(), Rc::clone(data));
-        self.shown.push(Shown { name, method, data, material, files: Vec::new(), constants: Vec::new() });
+        self.shown.push_mut(Shown { name, method, data, material, files: Vec::new(), constants: Vec::new() })
     }
 
     fn add_dictionaries(&mut self, gpu: &Gpu, pack: &Pack, colours: &[Vec3]) -> Result<(), GpuError> {
@@ -75,7 +70,8 @@ impl Subjects {
                 material.colours = colours.len() as u32;
                 material.mean_colour = (colours.iter().sum::<Vec3>() / colours.len() as f32).to_array();
             }
-            self.add(Method::Dictionary, name, methods::dictionary::upload(gpu, &tables, colours), material);
+            let data = Rc::new(methods::dictionary::upload(gpu, &tables, colours));
+            self.add(Method::Dictionary, name, &data, material);
         }
         Ok(())
     }
@@ -85,13 +81,14 @@ impl Subjects {
         let read = |name: &str| ndf_maps::sections::from_pack(pack, name).map_err(bad);
         for layered in ndf_maps::sections::layered(pack).map_err(bad)? {
             let (base, coat) = (read(&layered.base)?, read(&layered.coat)?);
-            let data = methods::ndf_maps::upload(gpu, &base, Some((&coat, layered.coat_f0)))?;
+            let data = Rc::new(methods::ndf_maps::upload(gpu, &base, Some((&coat, layered.coat_f0)))?);
             let material = Material { f0: layered.base_f0, ..ndf_material(&base) };
-            self.add(Method::NdfMaps, &format!("{}+{}", layered.coat, layered.base), data, material);
+            self.add(Method::NdfMaps, &format!("{}+{}", layered.coat, layered.base), &data, material);
         }
         for name in ndf_maps::sections::materials(pack) {
             let baked = read(name)?;
-            self.add(Method::NdfMaps, name, methods::ndf_maps::upload(gpu, &baked, None)?, ndf_material(&baked));
+            let data = Rc::new(methods::ndf_maps::upload(gpu, &baked, None)?);
+            self.add(Method::NdfMaps, name, &data, ndf_material(&baked));
         }
         Ok(())
     }
@@ -99,11 +96,9 @@ impl Subjects {
     fn add_lobes(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
         for name in lobes::sections::maps(pack) {
             let baked = lobes::sections::from_pack(pack, name).map_err(bad)?;
-            let files = methods::lobes::modules(&baked.params).to_vec();
             let data = Rc::new(methods::lobes::upload(gpu, &baked));
-            let material = lobes_material(&baked.params);
-            let name = name.to_owned();
-            self.shown.push(Shown { name, method: Method::Lobes, data, material, files, constants: Vec::new() });
+            let shown = self.add(Method::Lobes, name, &data, lobes_material(&baked.params));
+            shown.files = methods::lobes::modules(&baked.params).to_vec();
         }
         Ok(())
     }
@@ -111,11 +106,9 @@ impl Subjects {
     fn add_surfaces(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
         for name in surface::sections::surfaces(pack) {
             let baked = surface::sections::from_pack(pack, name).map_err(bad)?;
-            let files = methods::lobes::surface_modules(&baked, true).to_vec();
             let data = Rc::new(methods::lobes::upload_surface(gpu, &baked));
-            let material = lobes_material(&baked.lobes.params);
-            let name = name.to_owned();
-            self.shown.push(Shown { name, method: Method::Surface, data, material, files, constants: Vec::new() });
+            let shown = self.add(Method::Surface, name, &data, lobes_material(&baked.lobes.params));
+            shown.files = methods::lobes::surface_modules(&baked, true).to_vec();
         }
         Ok(())
     }
@@ -128,21 +121,13 @@ impl Subjects {
                 continue;
             }
             let baked = environment::sections::from_pack(pack, name).map_err(bad)?;
-            let constants = vec![
+            self.environment = Some(Rc::new(methods::environment::upload(gpu, &baked)));
+            let material = Material { alpha: [0.25; 2], ..Material::default() };
+            let shown = self.add(Method::Environment, name, &nothing(gpu), material);
+            shown.constants = vec![
                 ("ENVIRONMENT_LEVELS", baked.params.levels.len() as f64),
                 ("ENVIRONMENT_COLOURED", f64::from(u8::from(baked.params.coloured))),
             ];
-            self.environment = Some(Rc::new(methods::environment::upload(gpu, &baked)));
-            let data = Rc::new(ResourceSet::default().finish(gpu));
-            let material = Material { alpha: [0.25; 2], ..Material::default() };
-            self.shown.push(Shown {
-                name: name.to_owned(),
-                method: Method::Environment,
-                data,
-                material,
-                files: Vec::new(),
-                constants,
-            });
         }
         Ok(())
     }
@@ -157,11 +142,16 @@ impl Subjects {
                 ..Material::default()
             };
             let data = Rc::new(methods::area_light::upload(gpu, &baked));
-            self.share(Method::AreaLight, name, &data, material);
-            self.share(Method::PlainLtc, name, &data, material);
+            self.add(Method::AreaLight, name, &data, material);
+            self.add(Method::PlainLtc, name, &data, material);
         }
         Ok(())
     }
+}
+
+/// The data of methods that have none of their own.
+fn nothing(gpu: &Gpu) -> Rc<Resources> {
+    Rc::new(ResourceSet::default().finish(gpu))
 }
 
 /// A tiny example repeats some times over the surface.

@@ -39,7 +39,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     terminal.detail(&format!("adapter: {}", gpu.adapter_line()));
     let subjects = upload(&gpu, &reports, &args.material).map_err(failure)?;
     for note in subjects.notes() {
-        terminal.say(note);
+        terminal.say(&note);
     }
     if args.list {
         return output::print(&list(&gpu, &subjects));
@@ -96,7 +96,8 @@ fn window(
         meshes,
         load: Box::new(move |gpu| {
             let subjects = upload(gpu, &reports, &flags)?;
-            Ok(Loaded { list: subjects.shown, environment: subjects.environment })
+            let notes = subjects.notes();
+            Ok(Loaded { list: subjects.shown, environment: subjects.environment, notes })
         }),
         prepare: Box::new(move |list, camera| {
             settings(&wishes, list, camera, placement).map_err(|failure| failure.message)

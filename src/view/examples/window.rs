@@ -46,7 +46,7 @@ fn main() -> ExitCode {
                 shown(Method::Smooth, ResourceSet::default().finish(gpu)),
                 shown(Method::Dictionary, methods::dictionary::upload(gpu, &baked, &[])),
             ];
-            Ok(Loaded { list, environment: None })
+            Ok(Loaded { list, environment: None, notes: Vec::new() })
         }),
         prepare: Box::new(|list, camera| Ok(Settings::new(list, camera))),
         save: Box::new(|picture| save(picture).map_err(|error| format!("window.ppm: {error}"))),

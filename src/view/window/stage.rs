@@ -13,6 +13,8 @@ pub struct Loaded {
     pub list: Vec<Shown>,
     /// Environment of the scene, if there is one.
     pub environment: Option<Rc<Resources>>,
+    /// What the user should know.
+    pub notes: Vec<String>,
 }
 
 /// Uploads what is shown; called again for each new device.
@@ -75,14 +77,10 @@ impl Stage {
             return Err(GpuError::BadPack("there is nothing to show".to_owned()));
         }
         let mut renderer = Renderer::new(&gpu, mesh)?;
-        let resources = loaded.list.iter().map(|shown| &shown.data).chain(&loaded.environment);
-        let mut notes: Vec<String> = resources.flat_map(|resources| resources.notes.iter().cloned()).collect();
-        notes.sort();
-        notes.dedup();
         if let Some(environment) = loaded.environment {
             renderer.set_environment(environment);
         }
-        Ok(Stage { gpu, list: loaded.list, notes, renderer, target: None, drawn: None })
+        Ok(Stage { gpu, list: loaded.list, notes: loaded.notes, renderer, target: None, drawn: None })
     }
 
     /// Draws another mesh from now on.
@@ -175,7 +173,7 @@ mod tests {
                 files: Vec::new(),
                 constants: Vec::new(),
             };
-            Ok(Loaded { list: vec![shown], environment: None })
+            Ok(Loaded { list: vec![shown], environment: None, notes: Vec::new() })
         })
     }
 
