@@ -1,7 +1,7 @@
 //! Time of each method over that of its smooth baseline, in one run, with the error against its reference beside it.
 
 use crate::gpu::{Gpu, GpuError};
-use crate::render::{Camera, Compare, LightKind, Method, Renderer, Shown, Side, View, picture};
+use crate::render::{Camera, Compare, LightKind, Method, Overlay, Renderer, Shown, Side, View, picture};
 use crate::scene::Mesh;
 use crate::settings::{Against, Settings, rect_facing};
 use crate::subjects::Subjects;
@@ -96,10 +96,14 @@ pub struct BenchRow {
     pub view: &'static str,
     /// What its time is compared with.
     pub baseline: &'static str,
-    /// Median seconds of a frame's surface pass.
-    pub seconds: f64,
+    /// Median seconds of a frame's passes: the surface and its display.
+    pub frame: f64,
     /// That over the median of the baseline, whose frames took turns with those of the method.
-    pub ratio: f64,
+    pub frame_ratio: f64,
+    /// The same of the surface pass alone.
+    pub surface_ratio: f64,
+    /// Look-ups of the method's data a pixel, mean over the picture.
+    pub loads: f64,
     /// Instructions of the method's program as SPIR-V, all its lights and both sides of its branches.
     pub instructions: usize,
     /// Sum over pixels of the luminance's absolute difference from the reference over the sum of the reference's.
@@ -129,7 +133,11 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
             }
         }
     }
-    let [base, own] = times.map(median);
+    let [base, own] = times.map(|times| FrameSeconds {
+        surface: median(times.iter().map(|time| time.surface).collect()),
+        frame: median(times.iter().map(|time| time.frame).collect()),
+    });
+    let loads = mean_loads(gpu, renderer, &View { size: settings.error_size, ..of(shown, false) })?;
     let source = glint_shaders::program(shown.method.name(), &shown.files);
     let instructions = glint_shaders::translate::spirv_instructions(&source).map_err(GpuError::Failed)?;
     // Glints under an environment have no reference but their mean over seeds.
@@ -145,20 +153,39 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
         name: shown.name.clone(),
         view: setup.name,
         baseline: setup.baseline.method.name(),
-        seconds: own,
-        ratio: own / base,
+        frame: own.frame,
+        frame_ratio: own.frame / base.frame,
+        surface_ratio: own.surface / base.surface,
+        loads,
         instructions,
         error,
     })
 }
 
-/// Seconds of the surface pass of one frame: by the device's timestamps, else by the clock around the whole frame.
-fn frame_seconds(gpu: &Gpu, renderer: &mut Renderer, view: &View) -> Result<f64, GpuError> {
+struct FrameSeconds {
+    surface: f64,
+    frame: f64,
+}
+
+/// Seconds of one frame, by the device's timestamps, else by the clock around it.
+fn frame_seconds(gpu: &Gpu, renderer: &mut Renderer, view: &View) -> Result<FrameSeconds, GpuError> {
     let start = std::time::Instant::now();
     picture(gpu, renderer, view, 1)?;
     let elapsed = start.elapsed().as_secs_f64();
-    let passes = renderer.pass_seconds(gpu)?;
-    Ok(passes.and_then(|passes| passes.first().map(|pass| pass.1)).unwrap_or(elapsed))
+    let passes = renderer.pass_seconds(gpu)?.unwrap_or_default();
+    let surface = passes.first().map_or(elapsed, |pass| pass.1);
+    let frame = if passes.is_empty() { elapsed } else { passes.iter().map(|pass| pass.1).sum() };
+    Ok(FrameSeconds { surface, frame })
+}
+
+/// Look-ups of the method's data a pixel, counted by the program itself.
+fn mean_loads(gpu: &Gpu, renderer: &mut Renderer, view: &View) -> Result<f64, GpuError> {
+    let mut view = view.clone();
+    view.display.overlay = Overlay::Loads;
+    picture(gpu, renderer, &view, 1)?;
+    let pixels = renderer.radiance(gpu, &view, 0)?;
+    let sum: f64 = pixels.iter().map(|pixel| f64::from(pixel[3]).exp2() - 1.0).sum();
+    Ok(sum / pixels.len() as f64)
 }
 
 fn error_of(
@@ -191,18 +218,20 @@ fn median(mut values: Vec<f64>) -> f64 {
 /// The rows as a Markdown table.
 pub fn table(rows: &[BenchRow]) -> String {
     let mut text = String::from(
-        "| method | material | seen from | ms a frame | over | ratio | instructions | error |\n| --- | --- | --- | ---: | --- | ---: | ---: | ---: |\n",
+        "| method | material | seen from | ms a frame | over | ratio | surface alone | look-ups | instructions | error |\n| --- | --- | --- | ---: | --- | ---: | ---: | ---: | ---: | ---: |\n",
     );
     for row in rows {
         let error = row.error.map_or("".to_owned(), |error| format!("{:.1} %", 100.0 * error));
         text.push_str(&format!(
-            "| {} | {} | {} | {:.1} | {} | {:.2} | {} | {error} |\n",
+            "| {} | {} | {} | {:.1} | {} | {:.2} | {:.2} | {:.1} | {} | {error} |\n",
             row.method,
             row.name,
             row.view,
-            1e3 * row.seconds,
+            1e3 * row.frame,
             row.baseline,
-            row.ratio,
+            row.frame_ratio,
+            row.surface_ratio,
+            row.loads,
             row.instructions
         ));
     }

@@ -181,6 +181,8 @@ pub enum OverlayKind {
     Footprint,
     /// Level of detail that is read
     Lod,
+    /// Look-ups of the method's data a pixel
+    Loads,
 }
 
 /// Tone mapping.

@@ -208,6 +208,7 @@ fn settings(args: &Args, list: &[Shown], camera: Orbit, placement: Option<Placem
         OverlayKind::None => Overlay::None,
         OverlayKind::Footprint => Overlay::Footprint,
         OverlayKind::Lod => Overlay::Lod,
+        OverlayKind::Loads => Overlay::Loads,
     };
     settings.tone = match args.view.tone {
         Tone::Filmic => ToneMapping::Filmic,

@@ -47,6 +47,9 @@ pub struct Resources {
     pub bytes: u64,
 }
 
+/// Elements in a row of [`ResourceSet::table`]; `bind_table_place` of bind_table.wgsl has the same.
+pub const TABLE_WIDTH: u32 = 1024;
+
 const STAGES: wgpu::ShaderStages = wgpu::ShaderStages::FRAGMENT.union(wgpu::ShaderStages::COMPUTE);
 
 impl ResourceSet {
@@ -84,6 +87,16 @@ impl ResourceSet {
     /// Adds a texture whose bytes are in the order of the pack, mip by mip, all layers of each. `filterable` says whether
     /// shaders sample it; loads need no filtering.
     pub fn texture(&mut self, gpu: &Gpu, shape: GpuTexture, filterable: bool, contents: &[u8]) -> &mut Self {
+        self.texture_of(gpu, shape, wgpu::TextureSampleType::Float { filterable }, contents)
+    }
+
+    fn texture_of(
+        &mut self,
+        gpu: &Gpu,
+        shape: GpuTexture,
+        sample_type: wgpu::TextureSampleType,
+        contents: &[u8],
+    ) -> &mut Self {
         let descriptor = wgpu::TextureDescriptor {
             label: None,
             size: wgpu::Extent3d { width: shape.size[0], height: shape.size[1], depth_or_array_layers: shape.layers },
@@ -99,12 +112,29 @@ impl ResourceSet {
             gpu.device.create_texture_with_data(&gpu.queue, &descriptor, TextureDataOrder::MipMajor, contents);
         let view = texture
             .create_view(&wgpu::TextureViewDescriptor { dimension: Some(shape.dimension), ..Default::default() });
-        let sample_type = wgpu::TextureSampleType::Float { filterable };
         self.push(
             wgpu::BindingType::Texture { sample_type, view_dimension: shape.dimension, multisampled: false },
             Resource::Texture(view),
         );
         self
+    }
+
+    /// Adds a table as a texture of [`TABLE_WIDTH`] columns, element i at column i mod `TABLE_WIDTH` of row i / `TABLE_WIDTH`:
+    /// elements of four bytes as `R32Uint`, of sixteen as `Rgba32Uint`.
+    ///
+    /// A GPU reads it as fast as a storage buffer; an adapter in software, which reads buffers one lane at a time, faster.
+    pub fn table(&mut self, gpu: &Gpu, format: wgpu::TextureFormat, contents: &[u8]) -> &mut Self {
+        let row = TABLE_WIDTH as usize * format.block_copy_size(None).unwrap_or(4) as usize;
+        let mut padded = contents.to_vec();
+        padded.resize(contents.len().next_multiple_of(row).max(row), 0);
+        let shape = GpuTexture {
+            format,
+            size: [TABLE_WIDTH, (padded.len() / row) as u32],
+            layers: 1,
+            mips: 1,
+            dimension: wgpu::TextureViewDimension::D2,
+        };
+        self.texture_of(gpu, shape, wgpu::TextureSampleType::Uint, &padded)
     }
 
     /// Adds a sampler that filters between texels and mips; it repeats or clamps.

@@ -24,6 +24,8 @@ pub enum Overlay {
     Footprint,
     /// Level of detail that is read: 0 blue to 10 red.
     Lod,
+    /// Look-ups of the method's data, log₂(1 + how many): 0 blue to 10 red.
+    Loads,
 }
 
 impl Overlay {
@@ -33,6 +35,7 @@ impl Overlay {
             Overlay::None => 0,
             Overlay::Footprint => 1,
             Overlay::Lod => 2,
+            Overlay::Loads => 3,
         }
     }
 
@@ -41,7 +44,7 @@ impl Overlay {
         match self {
             Overlay::None => [0.0, 1.0],
             Overlay::Footprint => [-3.0, 6.0],
-            Overlay::Lod => [0.0, 10.0],
+            Overlay::Lod | Overlay::Loads => [0.0, 10.0],
         }
     }
 }

@@ -2,10 +2,12 @@
 // texels and mips in steps of 1/256.
 
 fn glint_area_light_normals(position: vec2f, level: f32) -> vec4f {
+    bound_loads += 1u;
     return textureSampleLevel(area_light_normals, area_light_sampler, position / area_light.maps.size, level);
 }
 
 fn glint_area_light_roughness(position: vec2f, level: f32) -> vec4f {
+    bound_loads += 1u;
     return textureSampleLevel(area_light_roughness, area_light_sampler, position / area_light.maps.size, level);
 }
 
@@ -14,9 +16,11 @@ fn area_light_table_uv(place: vec2f) -> vec2f {
 }
 
 fn glint_ltc_inverse(place: vec2f) -> vec4f {
+    bound_loads += 1u;
     return textureSampleLevel(area_light_inverse, area_light_table_sampler, area_light_table_uv(place), 0.0);
 }
 
 fn glint_ltc_terms(place: vec2f) -> vec4f {
+    bound_loads += 1u;
     return textureSampleLevel(area_light_terms, area_light_table_sampler, area_light_table_uv(place), 0.0);
 }

@@ -11,11 +11,13 @@ struct DictionaryData {
 @group(1) @binding(2) var<storage, read> dictionary_colours: array<vec4f>;
 
 fn glint_dictionary_filtered(row: u32, place: f32) -> f32 {
+    bound_loads += 1u;
     let low = floor(place);
     let pair = unpack2x16float(dictionary_table[row * dictionary.tables.entries + u32(low)]);
     return pair.x + (pair.y - pair.x) * (place - low);
 }
 
 fn glint_dictionary_colour(index: u32) -> vec3f {
+    bound_loads += 1u;
     return dictionary_colours[index].rgb;
 }

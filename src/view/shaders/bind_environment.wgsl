@@ -13,17 +13,21 @@
 @group(2) @binding(5) var environment_sampler: sampler;
 
 fn glint_environment_radiance_at(direction: vec3f, mip: f32) -> vec4f {
+    bound_loads += 1u;
     return textureSampleLevel(environment_radiance, environment_sampler, direction, mip) * environment.radiance_scale;
 }
 
 fn glint_environment_indicators_at(layer: u32, direction: vec3f, mip: f32) -> vec4f {
+    bound_loads += 1u;
     return textureSampleLevel(environment_indicators, environment_sampler, direction, layer, mip);
 }
 
 fn glint_environment_colour_at(layer: u32, direction: vec3f, mip: f32) -> vec3f {
+    bound_loads += 1u;
     return textureSampleLevel(environment_colours, environment_sampler, direction, layer, mip).rgb;
 }
 
 fn glint_environment_albedo_at(place: vec2f) -> vec4f {
+    bound_loads += 1u;
     return textureSampleLevel(environment_albedo, environment_sampler, place, 0.0);
 }

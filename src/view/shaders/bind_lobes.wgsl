@@ -22,18 +22,22 @@ fn glint_lobes_level(index: u32) -> GlintLobesLevel {
 }
 
 fn glint_lobes_words(index: u32) -> vec4u {
+    bound_loads += 1u;
     return lobes_records[index];
 }
 
 fn glint_lobes_normals_word(index: u32) -> u32 {
+    bound_loads += 1u;
     return lobes_normals[index];
 }
 
 fn glint_synthesis_offset(patch_index: u32) -> vec2i {
+    bound_loads += 1u;
     let word = synthesis_offsets[patch_index];
     return vec2i(i32(word & 0xffffu), i32(word >> 16u));
 }
 
 fn glint_synthesis_seam_word(index: u32) -> u32 {
+    bound_loads += 1u;
     return synthesis_seams[index];
 }

@@ -21,9 +21,11 @@ struct NdfMapsData {
 @group(1) @binding(2) var<storage, read> ndf_maps_words: array<u32>;
 
 fn glint_ndf_record(at: u32) -> vec4u {
+    bound_loads += 1u;
     return ndf_maps_records[at];
 }
 
 fn glint_ndf_word(at: u32) -> u32 {
+    bound_loads += 1u;
     return ndf_maps_words[at];
 }

@@ -2,6 +2,7 @@
 
 const VIEW_OVERLAY_FOOTPRINT: u32 = 1u;
 const VIEW_OVERLAY_LOD: u32 = 2u;
+const VIEW_OVERLAY_LOADS: u32 = 3u;
 
 // Lights that are on, as a sum of the above.
 override LIGHTS: u32 = 1u;
@@ -95,6 +96,9 @@ fn fragment(f: ViewFragment, @builtin(front_facing) front: bool) -> @location(0)
     }
     if OVERLAY == VIEW_OVERLAY_LOD {
         overlay = shade_lod(point);
+    }
+    if OVERLAY == VIEW_OVERLAY_LOADS {
+        overlay = log2(1.0 + f32(bound_loads));
     }
     return vec4f(radiance, overlay);
 }

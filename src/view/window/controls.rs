@@ -154,7 +154,8 @@ impl Controls {
                 settings.overlay = match settings.overlay {
                     Overlay::None => Overlay::Footprint,
                     Overlay::Footprint => Overlay::Lod,
-                    Overlay::Lod => Overlay::None,
+                    Overlay::Lod => Overlay::Loads,
+                    Overlay::Loads => Overlay::None,
                 }
             }
             Press::Hide => self.panel = !self.panel,
@@ -229,7 +230,7 @@ mod tests {
         assert_eq!(settings.shown, 2, "there is no ninth method");
         press(c, &mut settings, "r");
         assert!(settings.reference);
-        for overlay in [Overlay::Footprint, Overlay::Lod, Overlay::None] {
+        for overlay in [Overlay::Footprint, Overlay::Lod, Overlay::Loads, Overlay::None] {
             press(c, &mut settings, "o");
             assert_eq!(settings.overlay, overlay);
         }

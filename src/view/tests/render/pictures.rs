@@ -38,7 +38,7 @@ fn hard_views_have_no_pixel_without_a_number() {
             view.scene.lights.sun.iter_mut().for_each(|sun| sun.direction = direction);
             mean_radiance(gpu, &mut renderer, &view, 1);
         }
-        for overlay in [Overlay::Footprint, Overlay::Lod] {
+        for overlay in [Overlay::Footprint, Overlay::Lod, Overlay::Loads] {
             view.display.overlay = overlay;
             mean_radiance(gpu, &mut renderer, &view, 1);
         }
