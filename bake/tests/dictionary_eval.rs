@@ -5,7 +5,7 @@ use glint_bake_core::dictionary::cells::{cell_weight, level_window, max_cells, p
 use glint_bake_core::dictionary::eval::{
     GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, log1p_over_x, patch_sdf, smooth_sdf,
 };
-use glint_bake_core::dictionary::hash::{CellState, cell_state, draw_bits, draw_uniform, uniform_from_bits};
+use glint_bake_core::dictionary::hash::{CellState, cell_state, draw_bits, uniform_from_bits};
 use glint_bake_core::dictionary::{DictionaryOptions, bake, reference};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -99,7 +99,9 @@ fn every_cell_of_the_ellipse_is_visited_once_and_the_count_is_bounded() {
                     total += f64::from(cell_weight(window, column, row));
                 }
             }
-            let reach = window.xx.max(window.yy).sqrt() as i32 + 2;
+            let inverse = window.inverse.as_dvec3();
+            let widest = window.yy.max((inverse.z / (inverse.x * inverse.z - inverse.y * inverse.y)) as f32);
+            let reach = widest.sqrt() as i32 + 2;
             let mut everything = 0.0f64;
             for row in -reach..=reach {
                 for column in -reach..=reach {
@@ -141,6 +143,17 @@ fn no_two_cells_share_a_state_and_no_cell_is_its_own_hash() {
     assert!(cell_state(3, 4, 0) != cell_state(3, 4, 1));
 }
 
+/// Random words of a cell: its draws, and after them its state's own, with the halves that marginals take first.
+fn word(x: u32, y: u32, seed: u32, index: u32) -> u32 {
+    let state = cell_state(x, y, seed);
+    match index {
+        7 => state.a,
+        8 => state.b,
+        9 => state.b << 16,
+        draw => draw_bits(state, draw),
+    }
+}
+
 #[test]
 fn draws_are_uniform_below_one_and_unlike_those_of_neighbours_and_parents() {
     assert!(uniform_from_bits(u32::MAX) < 1.0);
@@ -149,15 +162,16 @@ fn draws_are_uniform_below_one_and_unlike_those_of_neighbours_and_parents() {
     assert_eq!(origin.len(), 7, "the draws of cell (0, 0) repeat");
     let n = 256u32;
     for level in [0u32, 3, 12] {
-        for draw in 0..7 {
-            let at = |x: u32, y: u32| f64::from(draw_uniform(cell_state(x << level, y << level, 9), draw)) - 0.5;
+        for draw in 0..10 {
+            let of = |x: u32, y: u32, index| f64::from(uniform_from_bits(word(x << level, y << level, 9, index))) - 0.5;
+            let at = |x: u32, y: u32| of(x, y, draw);
             let mut histogram = [0f64; 64];
             let mut product = [0.0; 4];
             for y in 0..n {
                 for x in 0..n {
                     let u = at(x, y);
                     histogram[((u + 0.5) * 64.0) as usize] += 1.0;
-                    let next = f64::from(draw_uniform(cell_state(x << level, y << level, 9), draw + 1)) - 0.5;
+                    let next = of(x, y, (draw + 1) % 10);
                     for (k, other) in [at(x + 1, y), at(x, y + 1), at(x + 1, y + 1), next].into_iter().enumerate() {
                         product[k] += 12.0 * u * other / f64::from(n * n);
                     }
@@ -165,7 +179,7 @@ fn draws_are_uniform_below_one_and_unlike_those_of_neighbours_and_parents() {
             }
             let expected = f64::from(n * n) / 64.0;
             let chi2: f64 = histogram.iter().map(|c| (c - expected).powi(2) / expected).sum();
-            // 63 degrees of freedom, 21 histograms: 115 is beyond 1 in 20 000 for one.
+            // 63 degrees of freedom, 30 histograms: 115 is beyond 1 in 20 000 for one.
             assert!(chi2 < 115.0, "level {level} draw {draw}: χ² {chi2:.1}");
             // Standard deviation of a correlation over 65 536 pairs: 1/256.
             for (k, c) in product.into_iter().enumerate() {
@@ -178,13 +192,13 @@ fn draws_are_uniform_below_one_and_unlike_those_of_neighbours_and_parents() {
 #[test]
 fn one_bit_of_the_index_changes_half_the_bits_of_a_draw() {
     for bit in 0..32 {
-        for draw in [0, 6] {
+        for draw in [0, 6, 7, 8] {
             let mut changed = 0;
             for k in 0..2000u32 {
                 let (x, y) = (k.wrapping_mul(2_654_435_761), k);
-                let before = draw_bits(cell_state(x, y, 0), draw);
-                changed += (before ^ draw_bits(cell_state(x ^ (1 << bit), y, 0), draw)).count_ones();
-                changed += (before ^ draw_bits(cell_state(x, y ^ (1 << bit), 0), draw)).count_ones();
+                let before = word(x, y, 0, draw);
+                changed += (before ^ word(x ^ (1 << bit), y, 0, draw)).count_ones();
+                changed += (before ^ word(x, y ^ (1 << bit), 0, draw)).count_ones();
             }
             let share = f64::from(changed) / (2.0 * 2000.0 * 32.0);
             assert!((share - 0.5).abs() < 0.01, "bit {bit} draw {draw}: {share:.4}");

@@ -1,8 +1,9 @@
 //! Cells under a pixel footprint: clamped anisotropy, level of detail, and the weight of each cell. f32, as in WGSL.
 //!
 //! Paper: section 6.1, Eq. 12, and algorithm 1, lines 3 to 7. The footprint is the ellipse of the two screen
-//! derivatives with weight exp(−2 r²) inside r = 1, a Gaussian whose deviation is half a pixel. Deviations:
-//! - The weight is exp(−2 r²) − exp(−2), so a cell enters and leaves with weight zero.
+//! derivatives with weight exp(−2 r²) inside r = 1. Deviations:
+//! - The weight is (1 − r²)², within 0.03 of (exp(−2 r²) − exp(−2)) / (1 − exp(−2)): a cell enters and leaves with weight
+//!   zero, and slowly.
 //! - At each level the footprint is widened by a Gaussian of 0.4 cells (Heckbert's reconstruction filter). Every
 //!   footprint, of zero area too, then covers a cell centre, and magnified cells blend.
 //! - Rows of cells and the span of each row come from the ellipse, so each cell inside is visited once and none outside.
@@ -11,7 +12,7 @@
 //!
 //! Lengths are in cells of level 0; one surface unit has 2^(levels − 1) of them a side.
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 /// Coarsest level of the cell hierarchy. A minor radius beyond 2^`MAX_CELL_LEVEL` cells counts as that long.
 pub const MAX_CELL_LEVEL: u32 = 24;
@@ -19,8 +20,6 @@ pub const MAX_CELL_LEVEL: u32 = 24;
 pub const MAX_ANISOTROPY: f32 = 16.0;
 /// Squared radius, in cells, that the reconstruction filter adds: (2 · 0.4)².
 pub const RECONSTRUCTION_RADIUS2: f32 = 0.64;
-/// exp(−2), the weight at the rim.
-const RIM_WEIGHT: f32 = 0.135_335_28;
 
 /// Pixel footprint on the surface: symmetric matrix of squared radii, and its level of detail.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,14 +80,10 @@ pub struct LevelWindow {
     pub base_y: i32,
     /// Centre of the footprint from the corner of the base cell, 0 to 1.
     pub centre: Vec2,
-    /// Squared radii in cells².
-    pub xx: f32,
-    /// See `xx`.
-    pub xy: f32,
-    /// See `xx`.
+    /// Squared radius along y in cells².
     pub yy: f32,
-    /// Determinant of the squared radii.
-    pub det: f32,
+    /// Inverse of the matrix of squared radii: (xx, xy, yy).
+    pub inverse: Vec3,
     /// First row that may hold a cell centre, relative to the base cell.
     pub first_row: i32,
     /// Last such row.
@@ -107,14 +102,13 @@ pub fn level_window(footprint: PixelFootprint, position: Vec2, level: u32) -> Le
     let xy = footprint.xy * scale2;
     let yy = footprint.yy * scale2 + RECONSTRUCTION_RADIUS2;
     let reach = yy.sqrt();
+    let det = (xx * yy - xy * xy).max(RECONSTRUCTION_RADIUS2 * RECONSTRUCTION_RADIUS2);
     LevelWindow {
         base_x: base.x as i32,
         base_y: base.y as i32,
         centre,
-        xx,
-        xy,
         yy,
-        det: (xx * yy - xy * xy).max(RECONSTRUCTION_RADIUS2 * RECONSTRUCTION_RADIUS2),
+        inverse: Vec3::new(yy, -xy, xx) / det,
         first_row: (centre.y - reach - 0.5).ceil() as i32,
         last_row: (centre.y + reach - 0.5).floor() as i32,
     }
@@ -124,8 +118,8 @@ pub fn level_window(footprint: PixelFootprint, position: Vec2, level: u32) -> Le
 /// the first is larger.
 pub fn row_span(window: LevelWindow, row: i32) -> (i32, i32) {
     let dy = row as f32 + 0.5 - window.centre.y;
-    let mid = window.centre.x + window.xy / window.yy * dy;
-    let half = (window.det / window.yy * (1.0 - dy * dy / window.yy).max(0.0)).sqrt();
+    let mid = window.centre.x - window.inverse.y / window.inverse.x * dy;
+    let half = ((1.0 - dy * dy / window.yy).max(0.0) / window.inverse.x).sqrt();
     ((mid - half - 0.5).ceil() as i32, (mid + half - 0.5).floor() as i32)
 }
 
@@ -133,8 +127,9 @@ pub fn row_span(window: LevelWindow, row: i32) -> (i32, i32) {
 pub fn cell_weight(window: LevelWindow, column: i32, row: i32) -> f32 {
     let dx = column as f32 + 0.5 - window.centre.x;
     let dy = row as f32 + 0.5 - window.centre.y;
-    let r2 = (window.yy * dx * dx - 2.0 * window.xy * dx * dy + window.xx * dy * dy) / window.det;
-    ((-2.0 * r2).exp() - RIM_WEIGHT).max(0.0)
+    let r2 = window.inverse.x * dx * dx + 2.0 * window.inverse.y * dx * dy + window.inverse.z * dy * dy;
+    let inside = (1.0 - r2).max(0.0);
+    inside * inside
 }
 
 /// Bound on the cells of one query, both levels together: area plus perimeter of the largest ellipse of each level.

@@ -3,7 +3,8 @@
 //! Paper: algorithm 3 seeds a generator with the cell index and leaves the generator open. The authors' code gives
 //! neighbours the same seed, is constant at cell (0, 0), and can return exactly 1. Here a cell index (x, y) goes
 //! through four Feistel rounds, which is a bijection of 64 bits: two cells never share a state. Draw k is a mix of the
-//! first word plus k times the second word made odd, so the draws of a cell differ too. Wrapping u32 arithmetic only.
+//! first word plus k times the second word made odd, so the draws of a cell differ too. The words themselves, each the sum
+//! of a round's mix, are as random and serve what every cell asks for. Wrapping u32 arithmetic only.
 
 /// State of a cell: two words, different for any two cells of one seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -139,7 +139,7 @@ pub fn patch_sdf(
                 let offset = DVec2::new(index.0 as f64 + 0.5, index.1 as f64 + 0.5) - centre;
                 let along = offset.dot(direction) / long;
                 let across = offset.perp_dot(direction) / short;
-                let weight = (libm::exp(-2.0 * (along * along + across * across)) - libm::exp(-2.0)).max(0.0);
+                let weight = (1.0 - along * along - across * across).max(0.0).powi(2);
                 if weight == 0.0 {
                     continue;
                 }
@@ -195,11 +195,14 @@ fn cell_density(
         let rise = beckmann_radius(r + step).powi(2) - beckmann_radius((r - step).abs()).powi(2);
         jacobian = rise / ((r + step).powi(2) - (r - step).powi(2));
     }
-    let turned = DVec2::from_angle(-2.0 * PI * uniform(4)).rotate(isotropic.normalize_or_zero() * radius);
+    // An eighth of a turn either way.
+    let share = f64::from(state.a >> 8) / f64::from(1 << 24);
+    let turned = DVec2::from_angle(PI * (0.25 - 0.5 * share)).rotate(isotropic.normalize_or_zero() * radius);
     let at = turned * options.alpha_dict;
-    let pick = |draw: u32| ((u64::from(draw_bits(state, draw) >> 16) * u64::from(options.marginals)) >> 16) as u32;
+    let pick = |half: u32| ((u64::from(half) * u64::from(options.marginals)) >> 16) as u32;
     let row = |marginal: u32| &tables[(level * options.marginals + marginal) as usize];
-    let density = filtered(options, row(pick(5)), at.x.abs()) * filtered(options, row(pick(6)), at.y.abs());
+    let density = filtered(options, row(pick(state.b >> 16)), at.x.abs())
+        * filtered(options, row(pick(state.b & 0xffff)), at.y.abs());
     let density = density * jacobian * options.alpha_dict.powi(2) / (alpha.x * alpha.y);
 
     let mut colour = mean;

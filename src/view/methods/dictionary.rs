@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use glint_bake_core::dictionary::tables::Dictionary;
 
-/// `GlintDictionaryTables`.
+/// `DictionaryData`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct TablesUniform {
@@ -16,7 +16,8 @@ struct TablesUniform {
     domain: f32,
     inv_spacing: f32,
     lobe_area: f32,
-    unused: f32,
+    unused: u32,
+    last: [u32; 4],
 }
 
 /// Uploads a dictionary and the colours of its glints (linear RGB; none means white).
@@ -30,7 +31,8 @@ pub fn upload(gpu: &Gpu, dictionary: &Dictionary, colours: &[Vec3]) -> Resources
         domain: tables.domain,
         inv_spacing: tables.inv_spacing,
         lobe_area: tables.lobe_area,
-        unused: 0.0,
+        unused: 0,
+        last: [dictionary.bits.len() as u32 - 1; 4],
     };
     let colours: Vec<[f32; 4]> = colours.iter().map(|colour| colour.extend(1.0).to_array()).collect();
     let mut set = ResourceSet::default();

@@ -109,8 +109,14 @@ impl Method {
 
     /// Pipeline constants of its program that follow from a material.
     pub(super) fn constants(self, material: &Material) -> Vec<(&'static str, f64)> {
+        let asks = |name, asked: bool| (name, f64::from(u8::from(asked)));
         match self {
-            Method::AreaLight => vec![("AREA_LIGHT_DIRECTIONAL", f64::from(u8::from(material.lobes > 0)))],
+            Method::Dictionary => vec![
+                asks("DICTIONARY_PARTIAL", material.relative_area < 1.0),
+                asks("DICTIONARY_RANDOMISED", material.density_randomisation > 0.0),
+                asks("DICTIONARY_COLOURED", material.colours > 0),
+            ],
+            Method::AreaLight => vec![asks("AREA_LIGHT_DIRECTIONAL", material.lobes > 0)],
             _ => Vec::new(),
         }
     }

@@ -15,17 +15,12 @@ const GLINT_MAX_CELL_LEVEL: u32 = 24u;
 const GLINT_MAX_ANISOTROPY: f32 = 16.0;
 // Squared radius, in cells, that the reconstruction filter adds.
 const GLINT_RECONSTRUCTION_RADIUS2: f32 = 0.64;
-// exp(-2), the weight at the rim.
-const GLINT_RIM_WEIGHT: f32 = 0.13533528;
 const GLINT_PI: f32 = 3.14159265;
 
 const GLINT_DRAW_COVERAGE: u32 = 0u;
 const GLINT_DRAW_DENSITY_RADIUS: u32 = 1u;
 const GLINT_DRAW_DENSITY_ANGLE: u32 = 2u;
 const GLINT_DRAW_COLOUR: u32 = 3u;
-const GLINT_DRAW_ROTATION: u32 = 4u;
-const GLINT_DRAW_MARGINAL_X: u32 = 5u;
-const GLINT_DRAW_MARGINAL_Y: u32 = 6u;
 
 // Shape of the tables, from the section SDPP.
 struct GlintDictionaryTables {
@@ -93,10 +88,10 @@ struct GlintPixelFootprint {
 struct GlintLevelWindow {
     base: vec2i,
     centre: vec2f,
-    xx: f32,
-    xy: f32,
+    // Squared radius along y.
     yy: f32,
-    det: f32,
+    // Inverse of the matrix of squared radii: (xx, xy, yy).
+    inverse: vec3f,
     first_row: i32,
     last_row: i32,
 }
@@ -164,13 +159,12 @@ fn glint_level_window(footprint: GlintPixelFootprint, position: vec2f, level: u3
     let xy = footprint.xy * scale2;
     let yy = footprint.yy * scale2 + GLINT_RECONSTRUCTION_RADIUS2;
     let reach = sqrt(yy);
+    let det = max(xx * yy - xy * xy, GLINT_RECONSTRUCTION_RADIUS2 * GLINT_RECONSTRUCTION_RADIUS2);
     return GlintLevelWindow(
         vec2i(base),
         centre,
-        xx,
-        xy,
         yy,
-        max(xx * yy - xy * xy, GLINT_RECONSTRUCTION_RADIUS2 * GLINT_RECONSTRUCTION_RADIUS2),
+        vec3f(yy, -xy, xx) / det,
         i32(ceil(centre.y - reach - 0.5)),
         i32(floor(centre.y + reach - 0.5)),
     );
@@ -179,8 +173,8 @@ fn glint_level_window(footprint: GlintPixelFootprint, position: vec2f, level: u3
 // First and last column of a row, relative to the base cell, whose centres lie in the ellipse.
 fn glint_row_span(window: GlintLevelWindow, row: i32) -> vec2i {
     let dy = f32(row) + 0.5 - window.centre.y;
-    let mid = window.centre.x + window.xy / window.yy * dy;
-    let half = sqrt(window.det / window.yy * max(1.0 - dy * dy / window.yy, 0.0));
+    let mid = window.centre.x - window.inverse.y / window.inverse.x * dy;
+    let half = sqrt(max(1.0 - dy * dy / window.yy, 0.0) / window.inverse.x);
     return vec2i(i32(ceil(mid - half - 0.5)), i32(floor(mid + half - 0.5)));
 }
 
@@ -188,8 +182,9 @@ fn glint_row_span(window: GlintLevelWindow, row: i32) -> vec2i {
 fn glint_cell_weight(window: GlintLevelWindow, column: i32, row: i32) -> f32 {
     let dx = f32(column) + 0.5 - window.centre.x;
     let dy = f32(row) + 0.5 - window.centre.y;
-    let r2 = (window.yy * dx * dx - 2.0 * window.xy * dx * dy + window.xx * dy * dy) / window.det;
-    return max(exp(-2.0 * r2) - GLINT_RIM_WEIGHT, 0.0);
+    let r2 = window.inverse.x * dx * dx + 2.0 * window.inverse.y * dx * dy + window.inverse.z * dy * dy;
+    let inside = max(1.0 - r2, 0.0);
+    return inside * inside;
 }
 
 // ln(1 + x) / x for x >= 0, accurate for small x too.
@@ -233,6 +228,15 @@ fn glint_marginal(tables: GlintDictionaryTables, index: u32, level: u32, x: f32)
 fn glint_facet_level(tables: GlintDictionaryTables, material: GlintDictionaryMaterial, cell_level: u32) -> f32 {
     let cells_above = f32(tables.levels - 1u) - f32(cell_level);
     return 0.5 * log2(max(material.density, 1.0e-30)) - cells_above;
+}
+
+// Cosine and sine, within 4e-7, of the angle between -pi/4 and pi/4 that a random word stands for.
+fn glint_cell_rotation(bits: u32) -> vec2f {
+    let angle = (glint_uniform_from_bits(bits) - 0.5) * (0.5 * GLINT_PI);
+    let s = angle * angle;
+    let cosine = 1.0 + s * (-0.5 + s * (1.0 / 24.0 + s * (-1.0 / 720.0 + s * (1.0 / 40320.0))));
+    let sine = angle * (1.0 + s * (-1.0 / 6.0 + s * (1.0 / 120.0 - s * (1.0 / 5040.0))));
+    return vec2f(cosine, sine);
 }
 
 // Index below `count` from the upper 16 bits of a random word.
@@ -299,13 +303,11 @@ fn glint_cell_sdf(
         return GlintCellSdf(material.mean_colour * query.smooth_sdf, 1.0);
     }
 
-    let angle = 2.0 * GLINT_PI * glint_draw_uniform(state, GLINT_DRAW_ROTATION);
-    let sine = sin(angle);
-    let cosine = cos(angle);
-    let px = cosine * query.in_dict.x + sine * query.in_dict.y;
-    let py = cosine * query.in_dict.y - sine * query.in_dict.x;
-    let i = glint_pick(tables.marginals, glint_draw_bits(state, GLINT_DRAW_MARGINAL_X));
-    let j = glint_pick(tables.marginals, glint_draw_bits(state, GLINT_DRAW_MARGINAL_Y));
+    let turn = glint_cell_rotation(state.a);
+    let px = turn.x * query.in_dict.x + turn.y * query.in_dict.y;
+    let py = turn.x * query.in_dict.y - turn.y * query.in_dict.x;
+    let i = glint_pick(tables.marginals, state.b);
+    let j = glint_pick(tables.marginals, state.b << 16u);
     let sdf = glint_marginal(tables, i, level, abs(px)) * glint_marginal(tables, j, level, abs(py)) * query.jacobian;
     if material.colours == 0u {
         return GlintCellSdf(vec3f(sdf), 1.0);

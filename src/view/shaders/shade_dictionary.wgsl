@@ -1,9 +1,24 @@
 // A surface with the glints of a slope dictionary.
 
+// What a material has; false leaves its part out of the program.
+// Parts that do not glint.
+override DICTIONARY_PARTIAL: bool = true;
+// Cells of randomised density.
+override DICTIONARY_RANDOMISED: bool = true;
+// Colours.
+override DICTIONARY_COLOURED: bool = true;
+
 fn shade_dictionary_brdf(pixel: GlintPixelOnSurface, view: vec3f, light: vec3f) -> vec3f {
     let parameters = GlintDictionaryMaterial(
-        material.alpha, material.normal_target, material.density, material.relative_area,
-        material.density_randomisation, material.max_anisotropy, material.seed, material.colours, material.mean_colour,
+        material.alpha,
+        material.normal_target,
+        material.density,
+        select(1.0, material.relative_area, DICTIONARY_PARTIAL),
+        select(0.0, material.density_randomisation, DICTIONARY_RANDOMISED),
+        material.max_anisotropy,
+        material.seed,
+        select(0u, material.colours, DICTIONARY_COLOURED),
+        select(vec3f(1.0), material.mean_colour, DICTIONARY_COLOURED),
     );
     let half = glint_half_vector(view, light);
     let sum = glint_patch_sdf(dictionary.tables, parameters, pixel, glint_normal_to_slope(half));
