@@ -10,22 +10,27 @@ use glam::Vec3;
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BenchSettings {
+    /// Pixels of the pictures that are timed.
+    pub size: [u32; 2],
     /// Frames of each method; their median counts.
     pub frames: u32,
     /// Samples of the reference that the error is taken against; 0 leaves the error out.
     pub reference_samples: u32,
-    /// Pixels of the picture in which the error is taken.
+    /// Pixels of the picture in which the error is taken and look-ups are counted.
     pub error_size: [u32; 2],
 }
 
 impl Default for BenchSettings {
     fn default() -> BenchSettings {
-        BenchSettings { frames: 20, reference_samples: 256, error_size: [320, 180] }
+        BenchSettings { size: [1920, 1080], frames: 20, reference_samples: 256, error_size: [320, 180] }
     }
 }
 
-/// Texels of a map that a pixel is wide and high where it is seen from straight ahead.
+/// Texels of a map that a pixel is wide and high where it is seen from straight ahead, in pictures of any size.
 const TEXELS_PER_PIXEL: f32 = 2.0;
+/// Surface units likewise, of methods without a map: 2^-9.5. Levels of a dictionary's cells are powers of two, so that its level
+/// of detail is halfway between two, where about as many cells are read as on average over distances.
+const UNITS_PER_PIXEL: f32 = 0.001_381_067_9;
 /// Edge of the wall: it fills the picture from the side, too.
 const WALL: f32 = 16.0;
 /// Vertical field of view in radians (35°).
@@ -38,8 +43,10 @@ pub struct Setup {
     pub name: &'static str,
     /// The wall.
     pub mesh: Mesh,
-    /// The view, of the method.
+    /// The view that is timed, of the method.
     pub view: View,
+    /// The same in fewer pixels with the same footprints.
+    pub small: View,
     /// What the method is compared with.
     pub baseline: Shown,
 }
@@ -47,7 +54,7 @@ pub struct Setup {
 impl Setup {
     /// The setups of entry `index` of `list`, with the lights and materials of `settings`: the wall from straight ahead, where
     /// footprints are round and equal, and from 60° to the side, where they are long. None for what is a baseline itself.
-    pub fn of(list: &[Shown], index: usize, settings: &Settings, size: [u32; 2]) -> Vec<Setup> {
+    pub fn of(list: &[Shown], index: usize, settings: &Settings, bench: BenchSettings) -> Vec<Setup> {
         let shown = &list[index];
         let Some(method) = shown.method.baseline() else { return Vec::new() };
         let Some(base) =
@@ -61,11 +68,8 @@ impl Setup {
         settings.lights.only(&[shown.method.usual_light()]);
         settings.lights.room_on = false;
         let material = settings.materials[index];
-        // One unit of uv is the whole wall; the picture shows a height of 1 of it.
-        settings.uv_scale = WALL;
-        if shown.method.has_map() {
-            settings.uv_scale *= TEXELS_PER_PIXEL * size[1] as f32 / material.texels_per_unit;
-        }
+        let units_per_pixel =
+            if shown.method.has_map() { TEXELS_PER_PIXEL / material.texels_per_unit } else { UNITS_PER_PIXEL };
         let distance = 0.5 / (0.5 * FIELD_OF_VIEW).tan();
         let places = [("ahead", Vec3::new(0.0, 0.0, 1.0)), ("60°", Vec3::new(0.0, -0.866_025_4, 0.5))];
         places
@@ -75,11 +79,17 @@ impl Setup {
                 settings.lights.sun.direction = direction * Vec3::new(1.0, -1.0, 1.0) + Vec3::new(0.1, 0.1, 0.0);
                 let mirrored = direction * Vec3::new(1.0, -1.0, 1.0);
                 settings.lights.rect = rect_facing(Vec3::ZERO, mirrored * 1.5, 0.5, 0.35);
-                let mut view = settings.view(list, size);
                 let position = direction * distance;
-                view.scene.camera = Camera { position, target: Vec3::ZERO, field_of_view: FIELD_OF_VIEW, near: 0.01 };
-                let baseline = Shown { material, ..base.clone() };
-                Setup { name, mesh: Mesh::wall(WALL, WALL), view, baseline }
+                let mut view = |size: [u32; 2]| {
+                    // One unit of uv is the whole wall; the picture shows a height of 1 of it.
+                    settings.uv_scale = WALL * units_per_pixel * size[1] as f32;
+                    let mut view = settings.view(list, size);
+                    view.scene.camera =
+                        Camera { position, target: Vec3::ZERO, field_of_view: FIELD_OF_VIEW, near: 0.01 };
+                    view
+                };
+                let (view, small) = (view(bench.size), view(bench.error_size));
+                Setup { name, mesh: Mesh::wall(WALL, WALL), view, small, baseline: Shown { material, ..base.clone() } }
             })
             .into()
     }
@@ -116,13 +126,14 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
         return Err(GpuError::Failed("a bench has one side".into()));
     };
     let renderer = &mut subjects.renderer(gpu, &setup.mesh)?;
-    let of = |shown: &Shown, reference| View {
+    let of = |view: &View, shown: &Shown, reference| View {
         compare: Compare::Single(Side { shown: shown.clone(), reference }),
         antialias: false,
         vary_seed: false,
-        ..setup.view.clone()
+        ..view.clone()
     };
-    let views = [of(&setup.baseline, false), of(shown, false)];
+    let views = [of(&setup.view, &setup.baseline, false), of(&setup.view, shown, false)];
+    let small = |reference| of(&setup.small, shown, reference);
     let mut times = [Vec::new(), Vec::new()];
     // The first frame of each compiles its program and is not counted.
     for frame in 0..=settings.frames.max(1) {
@@ -137,13 +148,12 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
         surface: median(times.iter().map(|time| time.surface).collect()),
         frame: median(times.iter().map(|time| time.frame).collect()),
     });
-    let loads = mean_loads(gpu, renderer, &View { size: settings.error_size, ..of(shown, false) })?;
+    let loads = mean_loads(gpu, renderer, &small(false))?;
     let source = glint_shaders::program(shown.method.name(), &shown.files);
     let instructions = glint_shaders::translate::spirv_instructions(&source).map_err(GpuError::Failed)?;
     // Glints under an environment have no reference but their mean over seeds.
     let has_reference = shown.method.usual_light() != LightKind::Environment;
     let error = if has_reference && settings.reference_samples > 0 {
-        let small = |reference| View { size: settings.error_size, ..of(shown, reference) };
         Some(error_of(gpu, renderer, &small(false), &small(true), settings.reference_samples)?)
     } else {
         None

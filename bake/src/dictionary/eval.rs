@@ -16,7 +16,7 @@
 //! - Density randomisation takes its normal number from two uniform ones, so its tails are bounded.
 
 use super::cells::{MAX_CELL_LEVEL, PixelFootprint, cell_weight, level_window, pixel_footprint, row_span};
-use super::hash::{CellState, cell_state_in_row, draw_bits, draw_uniform, row_key, uniform_from_bits};
+use super::hash::{CellState, cell_state_in_row, draw_bits, draw_uniform, row_key};
 use super::tables::Tables;
 use glam::{Vec2, Vec3};
 
@@ -190,12 +190,12 @@ pub fn cell_sdf(
     (glint_colour(tables, material, draw_bits(state, DRAW_COLOUR), level, query.q_dict) * sdf, 1.0)
 }
 
-/// Cosine and sine, within 4e-7, of the angle between −π/4 and π/4 that a random word stands for.
+/// Cosine and sine, within 1e-5, of the angle between −π/4 and π/4 that a random word stands for.
 pub fn cell_rotation(bits: u32) -> Vec2 {
-    let angle = (uniform_from_bits(bits) - 0.5) * (0.5 * PI);
+    let angle = (bits >> 8) as f32 * (0.5 * PI / 16_777_216.0) - 0.25 * PI;
     let s = angle * angle;
-    let cosine = 1.0 + s * (-0.5 + s * (1.0 / 24.0 + s * (-1.0 / 720.0 + s * (1.0 / 40320.0))));
-    let sine = angle * (1.0 + s * (-1.0 / 6.0 + s * (1.0 / 120.0 - s * (1.0 / 5040.0))));
+    let cosine = 0.999_990_04 + s * (-0.499_708_16 + s * 0.040_398_57);
+    let sine = angle * (0.999_995 + s * (-0.166_601_62 + s * 0.008_121_56));
     Vec2::new(cosine, sine)
 }
 

@@ -311,11 +311,11 @@ fn turntable(
 /// Every entry on a wall that fills the picture, each in the light that it is made for.
 fn bench(args: &Args, gpu: &Gpu, subjects: &Subjects, settings: &Settings) -> Result<(), Failure> {
     let size = size(args);
-    let setup = BenchSettings { frames: args.picture.frames.unwrap_or(20), ..BenchSettings::default() };
+    let bench = BenchSettings { size, frames: args.picture.frames.unwrap_or(20), ..BenchSettings::default() };
     let mut rows = Vec::new();
     for index in 0..subjects.shown.len() {
-        for wall in Setup::of(&subjects.shown, index, settings, size) {
-            rows.push(measure(gpu, subjects, &wall, setup).map_err(failure)?);
+        for wall in Setup::of(&subjects.shown, index, settings, bench) {
+            rows.push(measure(gpu, subjects, &wall, bench).map_err(failure)?);
         }
     }
     output::print(&format!("{}, {} x {}\n\n{}", gpu.adapter_line(), size[0], size[1], table(&rows)))

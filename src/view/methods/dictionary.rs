@@ -17,7 +17,6 @@ struct TablesUniform {
     inv_spacing: f32,
     lobe_area: f32,
     unused: u32,
-    last: [u32; 4],
 }
 
 /// Uploads a dictionary and the colours of its glints (linear RGB; none means white).
@@ -32,7 +31,6 @@ pub fn upload(gpu: &Gpu, dictionary: &Dictionary, colours: &[Vec3]) -> Resources
         inv_spacing: tables.inv_spacing,
         lobe_area: tables.lobe_area,
         unused: 0,
-        last: [dictionary.bits.len() as u32 - 1; 4],
     };
     let colours: Vec<[f32; 4]> = colours.iter().map(|colour| colour.extend(1.0).to_array()).collect();
     let mut set = ResourceSet::default();

@@ -2,8 +2,6 @@
 
 struct DictionaryData {
     tables: GlintDictionaryTables,
-    // Index of the last element of the table.
-    @align(16) last: u32,
 }
 
 @group(1) @binding(0) var<uniform> dictionary: DictionaryData;
@@ -15,8 +13,9 @@ struct DictionaryData {
 fn glint_dictionary_filtered(row: u32, place: f32) -> f32 {
     bound_loads += 1u;
     let low = floor(place);
+    let tables = dictionary.tables;
     // A clamp that has no effect: without it compilers for software adapters work out the index once for every lane.
-    let at = min(row * dictionary.tables.entries + u32(low), dictionary.last);
+    let at = min(row * tables.entries + u32(low), tables.marginals * tables.levels * tables.entries - 1u);
     let pair = unpack2x16float(dictionary_table[at]);
     return pair.x + (pair.y - pair.x) * (place - low);
 }

@@ -230,12 +230,12 @@ fn glint_facet_level(tables: GlintDictionaryTables, material: GlintDictionaryMat
     return 0.5 * log2(max(material.density, 1.0e-30)) - cells_above;
 }
 
-// Cosine and sine, within 4e-7, of the angle between -pi/4 and pi/4 that a random word stands for.
+// Cosine and sine, within 1e-5, of the angle between -pi/4 and pi/4 that a random word stands for.
 fn glint_cell_rotation(bits: u32) -> vec2f {
-    let angle = (glint_uniform_from_bits(bits) - 0.5) * (0.5 * GLINT_PI);
+    let angle = f32(bits >> 8u) * (0.5 * GLINT_PI / 16777216.0) - 0.25 * GLINT_PI;
     let s = angle * angle;
-    let cosine = 1.0 + s * (-0.5 + s * (1.0 / 24.0 + s * (-1.0 / 720.0 + s * (1.0 / 40320.0))));
-    let sine = angle * (1.0 + s * (-1.0 / 6.0 + s * (1.0 / 120.0 - s * (1.0 / 5040.0))));
+    let cosine = 0.99999004 + s * (-0.49970816 + s * 0.04039857);
+    let sine = angle * (0.999995 + s * (-0.16660162 + s * 0.00812156));
     return vec2f(cosine, sine);
 }
 
