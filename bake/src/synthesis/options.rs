@@ -44,8 +44,8 @@ pub struct SynthesisOptions {
     pub overlap: u32,
     /// Weight α of normals against Jacobians in Eq. 7, 0 to 1.
     pub alpha: f64,
-    /// Mean Eq. 7 distance over the overlaps up to which a patch is as good as any, in units of the mean distance of
-    /// neighbouring texels of the sample.
+    /// Mean Eq. 7 distance along the cuts up to which a patch is as good as any (of corner tiles: over the overlaps), in units
+    /// of the mean distance of neighbouring texels of the sample.
     pub error_tolerance: f64,
     /// Offsets are multiples of this; it divides the patch. Blocks of this edge then fall on blocks of the sample.
     pub alignment: u32,
@@ -62,7 +62,7 @@ impl Default for SynthesisOptions {
             patch: 64,
             overlap: 8,
             alpha: 0.9,
-            error_tolerance: 0.5,
+            error_tolerance: 0.02,
             alignment: 8,
             max_candidates: 1024,
             seed: 0,
