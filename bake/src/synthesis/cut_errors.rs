@@ -6,10 +6,10 @@
 use super::features::{Feature, Features, distance};
 use super::options::SynthesisOptions;
 use super::seams::least_sum;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
 
-/// In place of the sum of a pair that nobody has asked for.
-const UNKNOWN: u64 = u64::MAX;
+/// In place of the sum of a pair that nobody has asked for, or that is larger.
+const UNKNOWN: u32 = u32::MAX;
 
 /// Errors along the cuts between candidates. Each is found when first asked for, since most never are.
 pub struct CutErrors<'a> {
@@ -18,13 +18,13 @@ pub struct CutErrors<'a> {
     patch: i32,
     overlap: i32,
     /// Sums along the cut of each ordered pair side by side, then of each one above the other.
-    sums: Vec<AtomicU64>,
+    sums: Vec<AtomicU32>,
 }
 
 impl<'a> CutErrors<'a> {
     /// Overlaps of the candidates at `offsets`.
     pub fn new(features: &'a Features, offsets: &'a [[u16; 2]], options: &SynthesisOptions) -> CutErrors<'a> {
-        let sums = (0..2 * offsets.len().pow(2)).map(|_| AtomicU64::new(UNKNOWN)).collect();
+        let sums = (0..2 * offsets.len().pow(2)).map(|_| AtomicU32::new(UNKNOWN)).collect();
         CutErrors { features, offsets, patch: options.patch as i32, overlap: options.overlap as i32, sums }
     }
 
@@ -33,11 +33,14 @@ impl<'a> CutErrors<'a> {
     pub fn between(&self, first: usize, second: usize, below: bool) -> f64 {
         let count = self.offsets.len();
         let known = &self.sums[(usize::from(below) * count + first) * count + second];
-        let mut sum = known.load(Ordering::Relaxed);
-        if sum == UNKNOWN {
-            sum = least_sum(&self.cost(first, second, below), self.overlap as usize);
-            known.store(sum, Ordering::Relaxed);
-        }
+        let sum = match known.load(Ordering::Relaxed) {
+            UNKNOWN => {
+                let sum = least_sum(&self.cost(first, second, below), self.overlap as usize);
+                known.store(u32::try_from(sum).unwrap_or(UNKNOWN), Ordering::Relaxed);
+                sum
+            }
+            sum => u64::from(sum),
+        };
         sum as f64 / f64::from(self.patch + self.overlap)
     }
 

@@ -12,7 +12,7 @@ pub const MAX_CANDIDATES: u32 = 4096;
 const FEATURE_BYTES: u64 = 12;
 
 /// Most bytes that the tables of a bake may take.
-const MAX_TABLE_BYTES: u64 = 320 << 20;
+const MAX_TABLE_BYTES: u64 = 400 << 20;
 
 /// The surface that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -212,7 +212,8 @@ impl SynthesisOptions {
         let candidates = u64::from(self.max_candidates).min(along(sample.width) * along(sample.height));
         let strip = u64::from(self.overlap) * u64::from(self.patch + self.overlap) * FEATURE_BYTES;
         let features = u64::from(sample.width) * u64::from(sample.height) * FEATURE_BYTES;
-        // Two strips of a candidate are held at a time; a tile has four sides. A pair has two errors and a likeness.
-        features + candidates * strip * 4 + candidates * candidates * 9
+        // Two strips of a candidate are held at a time; a tile has four sides. A pair has two errors, two
+        // sums along cuts and a likeness.
+        features + candidates * strip * 4 + candidates * candidates * 17
     }
 }
