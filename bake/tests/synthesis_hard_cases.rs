@@ -95,7 +95,8 @@ fn equal_candidates_are_used_alike() {
 #[test]
 fn lines_that_no_patch_continues_are_counted_as_ends() {
     // Lines along rows, every eighth texel; a little more or less of a slope along them.
-    let texel = |k: u32| [if k % 2 == 0 { 0.01 } else { -0.01 }, if k / 16 % 8 == 0 { 0.5 } else { 0.0 }];
+    let texel =
+        |k: u32| [if k.is_multiple_of(2) { 0.01 } else { -0.01 }, if (k / 16).is_multiple_of(8) { 0.5 } else { 0.0 }];
     let map = NormalMap { width: 16, height: 16, wrap: Wrap::Repeat, projected: (0..256).map(texel).collect() };
     let mut surface = baked(&map, &SynthesisOptions { overlap: 0, ..patches(32, 16) });
     // Neighbours in the sample as well, but for the sides: there, two lines of the sixteen rows end on either side.
