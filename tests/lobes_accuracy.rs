@@ -1,5 +1,5 @@
-//! MIP-mapped lobes on real maps: error against exact integration, and against the paper's clustering. Few footprints of two
-//! maps; the report has more.
+//! MIP-mapped lobes on real maps: error against exact integration, and against the paper's clustering. Few footprints; the
+//! report has more.
 
 mod real_maps;
 
@@ -15,25 +15,43 @@ use glint_bake_core::quality::sweep;
 use glint_formats::lobes::{Filter, Merge};
 use real_maps::{data, load};
 
+/// Maps, and the most that E₁ may be at σ = 2 (of smooth ones: the finest level) and from σ = 5 on.
+const MAPS: [(&str, f64, f64); 6] = [
+    ("normals/scratched_gold_cgbookcase_rgba.png", 0.03, 0.07),
+    ("normals/brushed_aluminium_godot_745.png", 0.1, 0.07),
+    ("normals/leather_008_3dtextures.jpg", 0.03, 0.07),
+    ("normals/wicker_khronos_512.png", 0.1, 0.07),
+    ("normals/carpaint_flakes_khronos_128.png", 0.1, 0.1),
+    ("normals/diamond_plate_pmndrs0008.jpg", 0.03, 0.07),
+];
+
 #[test]
 fn footprints_of_real_maps_are_within_their_error_and_far_ahead_of_k_means() {
     let Some(data) = data() else { return };
-    for (file, finest) in
-        [("normals/leather_008_3dtextures.jpg", 0.03), ("normals/scratched_gold_cgbookcase_rgba.png", 0.03)]
-    {
+    for (file, finest, clustered) in MAPS {
         let map = load(&data, file, Some((0, 0, 128)));
         let options = LobesOptions { footprints: 0, ..LobesOptions::default() };
         let ours = bake(&map, &options, &Silent).unwrap();
-        let paper = bake(&map, &LobesOptions { merge: Merge::KMeans, ..options }, &Silent).unwrap();
+        let paper =
+            [1, 4].map(|seeds| bake(&map, &LobesOptions { merge: Merge::KMeans, seeds, ..options }, &Silent).unwrap());
         let reference = Reference::new(&map, Filter::Linear, 0.02);
-        for sigma in [2.0, 5.0, 16.0] {
-            let places = sweep::footprints(sigma, 1.0, DVec2::splat(128.0), 3, 9);
-            let chosen = |baked| -> (&BakedLobes, Measured) { (baked, Measured::Chosen(QuerySettings::default())) };
-            let errors = footprint_errors(&reference, &[chosen(&ours), chosen(&paper)], &places, 6);
-            let [ours, paper] = [errors[0].e1.mean, errors[1].e1.mean];
-            // Up to σ = 2 both read the map itself.
-            let allowed = if sigma == 2.0 { finest } else { (0.5 * paper).min(0.07) };
-            assert!(ours <= allowed, "{file}, σ {sigma}: {ours}, k-means {paper}");
+        for sigma in [2.0, 3.0, 5.0, 16.0] {
+            // Small ones see much of one place, little of another.
+            let count = if sigma <= 3.0 { 8 } else { 3 };
+            let places = sweep::footprints(sigma, 1.0, DVec2::splat(128.0), count, 9);
+            // At our levels both read the map itself up to σ = 2, as at the paper's (Eq. 8) they do not.
+            let chosen = Measured::Chosen(QuerySettings::default());
+            let theirs = if sigma == 2.0 { Measured::Edge((4.0 * sigma).log2() as f32) } else { chosen };
+            let ways: [(&BakedLobes, Measured); 3] = [(&ours, chosen), (&paper[0], theirs), (&paper[1], theirs)];
+            let errors = footprint_errors(&reference, &ways, &places, 6);
+            let [ours, one, four] = [0, 1, 2].map(|k| errors[k].e1.mean);
+            let most = match sigma {
+                2.0 => finest,
+                3.0 => f64::INFINITY,
+                _ => clustered,
+            };
+            let allowed = most.min(0.5 * one.min(four));
+            assert!(ours <= allowed, "{file}, σ {sigma}: {ours}, k-means {one} and {four}");
         }
     }
 }

@@ -5,7 +5,7 @@ use glint_bake_core::footprint::Footprint;
 use glint_bake_core::lobes::eval::Frame;
 use glint_bake_core::lobes::options::{LobesOptions, NormalsChoice};
 use glint_bake_core::lobes::quality::{Measured, difference, footprint_errors};
-use glint_bake_core::lobes::query::{Detail, Gathered, QuerySettings};
+use glint_bake_core::lobes::query::{Detail, Gathered, Lod, QuerySettings};
 use glint_bake_core::lobes::reference::Reference;
 use glint_bake_core::lobes::reference_lobes::sum_of_boxes;
 use glint_bake_core::lobes::{BakedLobes, bake};
@@ -118,6 +118,28 @@ fn every_reduction_keeps_its_place_and_packing_costs_nothing_that_shows() {
         let half = error(Merge::Runnalls, LobeStorage::Half);
         assert!(runnalls < half + 0.003, "{sigma}: {runnalls} {half}");
     }
+}
+
+#[test]
+fn levels_by_edge_are_those_of_cells_as_wide_and_between_them_mixtures() {
+    let map = waves(64);
+    let baked = bake(&map, &options(), &Silent).unwrap();
+    let frame = Frame::new(&Footprint::new(DVec2::ZERO, 2.0, 1.0, 0.0));
+    // Stored levels have cells of 8 and 16 texels; σ = 2 reads boxes of half a texel.
+    for (lambda, finer, coarser, fraction) in [
+        (2.0, Detail::Boxes(0.5), Detail::Boxes(0.5), 0.0),
+        (2.75, Detail::Boxes(0.5), Detail::Cells(0), 0.75),
+        (3.0, Detail::Cells(0), Detail::Cells(0), 0.0),
+        (3.25, Detail::Cells(0), Detail::Cells(1), 0.25),
+        (9.5, Detail::Cells(1), Detail::Cells(1), 0.5),
+    ] {
+        assert_eq!(baked.lod_of_edge(&frame, lambda), Lod { finer, coarser, fraction }, "{lambda}");
+    }
+    let reference = Reference::new(&map, Filter::Linear, ROUGHNESS);
+    let error = |measured| mean_error(&reference, &baked, measured, 4.0);
+    assert_eq!(error(Measured::Edge(4.0)), error(Measured::At(Detail::Cells(1))));
+    let [finer, between, coarser] = [3.0, 3.5, 4.0].map(|lambda| error(Measured::Edge(lambda)));
+    assert!(finer < between && between < coarser, "{finer} {between} {coarser}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use glint_bake_core::error::BakeError;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::rng::ItemRng;
-use glint_bake_core::synthesis::measure::{repetition, seam_ratio, whole_share};
+use glint_bake_core::synthesis::measure::{feature_ends, repetition, seam_ratio, whole_share};
 use glint_bake_core::synthesis::sections::{from_pack, surfaces, to_sections};
 use glint_bake_core::synthesis::{Synthesis, SynthesisOptions, Target, assemble, bake};
 use glint_formats::ndf_maps::Wrap;
@@ -83,6 +83,31 @@ fn a_flat_map_stays_flat() {
         let piece = assemble(&surface, &map, (-30, -30), (120, 120)).unwrap();
         assert!(piece.projected.iter().all(|normal| *normal == [0.1, -0.2]));
     }
+}
+
+#[test]
+fn equal_candidates_are_used_alike() {
+    // 100 offsets, more than are looked at for one patch, that fit each other alike; 1024 patches.
+    let surface = baked(&flat(80, 80, Wrap::Repeat), &patches(512, 512));
+    assert_eq!(surface.params.measured.distinct_offsets, 100);
+}
+
+#[test]
+fn lines_that_no_patch_continues_are_counted_as_ends() {
+    // Lines along rows, every eighth texel; a little more or less of a slope along them.
+    let texel =
+        |k: u32| [if k.is_multiple_of(2) { 0.01 } else { -0.01 }, if (k / 16).is_multiple_of(8) { 0.5 } else { 0.0 }];
+    let map = NormalMap { width: 16, height: 16, wrap: Wrap::Repeat, projected: (0..256).map(texel).collect() };
+    let mut surface = baked(&map, &SynthesisOptions { overlap: 0, ..patches(32, 16) });
+    // Neighbours in the sample as well, but for the sides: there, two lines of the sixteen rows end on either side.
+    surface.offsets = vec![[0, 0], [0, 4]];
+    assert_eq!(feature_ends(&surface, &map), 1000.0 * 4.0 / 16.0);
+    surface.offsets = vec![[0, 0], [2, 8]];
+    assert_eq!(feature_ends(&surface, &map), 0.0);
+    surface.offsets = vec![[0, 0], [0, 0]];
+    assert_eq!(feature_ends(&surface, &map), 0.0);
+    let level = flat(16, 16, Wrap::Repeat);
+    assert_eq!(feature_ends(&baked(&level, &patches(64, 64)), &level), 0.0);
 }
 
 #[test]

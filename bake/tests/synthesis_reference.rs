@@ -65,6 +65,7 @@ fn chosen_patches_are_those_of_the_exhaustive_search() {
     // Grids of many patches, of one row, one column, one patch; samples that repeat, that do not, that are one patch.
     let cases = [
         (32, 28, Wrap::Repeat, 60, 48, 0.5),
+        (64, 56, Wrap::Repeat, 60, 48, 0.0),
         (40, 36, Wrap::Clamp, 72, 60, 0.0),
         (32, 24, Wrap::Repeat, 60, 12, 0.0),
         (32, 24, Wrap::Repeat, 5, 50, 2.0),

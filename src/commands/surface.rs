@@ -34,8 +34,8 @@ pub struct SurfaceFlags {
     /// Weight of normals against Jacobians where patches are compared, 0 to 1 [default: 0.9]
     #[arg(long, value_name = "ALPHA", requires = "synthesize")]
     pub alpha: Option<f64>,
-    /// Difference over an overlap up to which a patch is as good as any, in units of that of neighbouring texels
-    /// [default: 0.5]
+    /// Difference along a seam up to which a patch is as good as any, in units of that of neighbouring texels
+    /// [default: 0.02]
     #[arg(long, value_name = "ERROR", requires = "synthesize")]
     pub error_tolerance: Option<f64>,
     /// Corner colours of an unbounded surface, 1 to 4 [default: 4]

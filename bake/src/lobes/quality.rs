@@ -29,17 +29,23 @@ pub struct FootprintErrors {
 pub enum Measured {
     /// Levels as the evaluator chooses them.
     Chosen(QuerySettings),
+    /// Levels whose cells are 2^λ texels wide ([`BakedLobes::lod_of_edge`]).
+    Edge(f32),
     /// One level.
     At(Detail),
 }
 
 impl BakedLobes {
     fn seen(&self, footprint: &Footprint, roughness: f64, measured: &Measured) -> Gathered {
+        let (roughness, reach) = (roughness as f32, QuerySettings::default().reach);
         match measured {
-            Measured::Chosen(settings) => self.gather(footprint, roughness as f32, settings),
-            Measured::At(detail) => {
-                self.gather_detail(footprint, *detail, roughness as f32, QuerySettings::default().reach)
+            Measured::Chosen(settings) => self.gather(footprint, roughness, settings),
+            Measured::Edge(lambda) => {
+                let frame = self.frame(footprint);
+                let add = |list: &mut _, detail| self.add(list, &frame, detail, roughness, reach);
+                self.lod_of_edge(&frame, *lambda).gather(add)
             }
+            Measured::At(detail) => self.gather_detail(footprint, *detail, roughness, reach),
         }
     }
 }

@@ -249,7 +249,7 @@ impl BakedLobes {
     }
 
     /// Edge of the boxes that a footprint is resolved in: a power of two, at most a texel.
-    fn box_edge(&self, frame: &Frame, settings: &QuerySettings) -> f32 {
+    pub(super) fn box_edge(&self, frame: &Frame, settings: &QuerySettings) -> f32 {
         // The seam of a clamped map cuts through whole-texel boxes.
         let own_map = self.params.step_texels == 0;
         let clamped = own_map && self.params.wrap == Wrap::Clamp && self.params.filter == Filter::Linear;
@@ -297,7 +297,14 @@ impl BakedLobes {
     }
 
     /// Adds the lobes that a footprint sees at one level to a list.
-    fn add(&self, list: &mut Vec<SeenLobe>, frame: &Frame, detail: Detail, roughness: f32, reach: f32) -> u32 {
+    pub(super) fn add(
+        &self,
+        list: &mut Vec<SeenLobe>,
+        frame: &Frame,
+        detail: Detail,
+        roughness: f32,
+        reach: f32,
+    ) -> u32 {
         Query::new(self, *frame, roughness, |seen: &SeenLobe| list.push(*seen)).add_repeated(detail, reach)
     }
 
@@ -314,7 +321,7 @@ impl BakedLobes {
     }
 
     /// Axes of a footprint, its centre moved by whole periods into the map, where positions have the most digits.
-    fn frame(&self, footprint: &Footprint) -> Frame {
+    pub(super) fn frame(&self, footprint: &Footprint) -> Frame {
         let size = DVec2::new(self.params.width as f64, self.params.height as f64);
         let mean = footprint.mean - (footprint.mean / size).floor() * size;
         Frame::new(&Footprint { mean, ..*footprint })

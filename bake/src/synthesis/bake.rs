@@ -6,6 +6,7 @@
 
 use super::candidates::Candidates;
 use super::choose::{Choice, Radii};
+use super::cut_errors::CutErrors;
 use super::features::{Features, distance};
 use super::measure::measure;
 use super::options::{SynthesisOptions, Target};
@@ -80,6 +81,7 @@ fn quilt(
     let choice = Choice {
         candidates,
         errors: &errors,
+        cuts: CutErrors::new(features, &candidates.offsets, options),
         columns,
         rows,
         units: features.neighbour_distance(),

@@ -4,7 +4,9 @@
 //! there is none, one of least error. Deviations:
 //! - errors are in units of the distance of neighbours in the sample, along rows for patches side by side, along columns
 //!   for those above: across the streaks of a brushed map texels differ anyway, along them a seam is seen;
-//! - an error next to the least (within 10 %) is as good as the least;
+//! - of the candidates whose overlaps differ least, [`SHORTLIST`] of them, the error is what the best cuts go through
+//!   ([`CutErrors`]), since that alone is seen;
+//! - it counts as more the oftener a candidate has been used ([`CROWDING`]), and within 10 % of the least as the least;
 //! - the grid is a torus: a patch also fits the neighbours across the edge that are placed already, so the surface repeats
 //!   without a seam;
 //! - of the candidates within tolerance the least used are preferred, so that the surface has the normals of the sample in
@@ -12,29 +14,34 @@
 //! - patches that show much the same as one near by are left out ([`Radii`]), or the eye finds the repetition.
 
 use super::candidates::{Candidates, Likeness};
+use super::cut_errors::CutErrors;
 use super::strips::PairErrors;
 use crate::progress::Progress;
 use crate::rng::ItemRng;
+use rayon::prelude::*;
 
 /// Purpose of the random numbers that choose patches.
 pub(super) const PURPOSE: u32 = 51;
 
+/// Candidates whose cuts are looked at for a patch. Of 512² texels of scratches and an overlap of 24, 200 are no better.
+pub const SHORTLIST: usize = 64;
+
+/// How much, relatively, the error of a candidate rises when it has been used as often as candidates are on average.
+pub const CROWDING: f64 = 0.3;
+
 /// How much larger than the least error, relatively, an error is that counts as equal to it.
 const SLACK: f64 = 0.1;
 
-/// Picks a candidate: of those whose error is `limit` at most, which one is at least, the least used; of these one by
-/// chance. Barred ones are left out unless all are.
-pub(super) fn pick(
-    errors: &[f64],
-    barred: &[bool],
-    used: &[u32],
-    limit: impl Fn(&[f64]) -> f64,
-    rng: &mut ItemRng,
-) -> usize {
+/// Candidates that may be chosen: those not barred, or all where all are.
+pub(super) fn allowed(barred: &[bool]) -> Vec<usize> {
     let any = barred.contains(&false);
-    let allowed: Vec<usize> = (0..errors.len()).filter(|&c| !any || !barred[c]).collect();
-    let limit = limit(&allowed.iter().map(|&c| errors[c]).collect::<Vec<f64>>());
-    let good: Vec<usize> = allowed.into_iter().filter(|&c| errors[c] <= limit).collect();
+    (0..barred.len()).filter(|&c| !any || !barred[c]).collect()
+}
+
+/// Picks one of the candidates `among`, whose errors are given in their order, `limit` being no less than the least: of
+/// those within the limit the least used, of these one by chance.
+pub(super) fn pick(among: &[usize], errors: &[f64], limit: f64, used: &[u32], rng: &mut ItemRng) -> usize {
+    let good: Vec<usize> = among.iter().zip(errors).filter(|&(_, &e)| e <= limit).map(|(&c, _)| c).collect();
     let fewest = good.iter().map(|&c| used[c]).min().unwrap_or(0);
     let best: Vec<usize> = good.into_iter().filter(|&c| used[c] == fewest).collect();
     best[rng.below(best.len() as u32) as usize]
@@ -67,15 +74,17 @@ impl Radii {
 pub struct Choice<'a> {
     /// Offsets to choose from.
     pub candidates: &'a Candidates,
-    /// Their errors.
+    /// Their errors over whole overlaps.
     pub errors: &'a PairErrors,
+    /// Their errors along cuts.
+    pub cuts: CutErrors<'a>,
     /// Columns of patches.
     pub columns: u32,
     /// Rows of patches.
     pub rows: u32,
     /// Mean distance of neighbours in the sample along rows and along columns.
     pub units: [f64; 2],
-    /// Mean error of an overlap, in units, up to which candidates are equally good.
+    /// Mean error along a cut, in units, up to which candidates are equally good.
     pub tolerance: f64,
     /// What may not be near.
     pub radii: Radii,
@@ -99,47 +108,62 @@ impl Choice<'_> {
 
     fn pick(&self, at: u32, placed: &[u32], used: &[u32]) -> usize {
         let (column, row) = (at % self.columns, at / self.columns);
-        let (errors, overlaps) = self.sums(column, row, placed);
-        let barred = self.barred(column, row, placed);
-        let mut rng = ItemRng::new(self.seed, PURPOSE, at);
-        let tolerance = self.tolerance * overlaps;
-        let least = |errors: &[f64]| errors.iter().copied().fold(f64::INFINITY, f64::min);
-        pick(&errors, &barred, used, |errors| tolerance.max(least(errors) * (1.0 + SLACK)), &mut rng)
+        let overlaps = self.overlaps(column, row, placed);
+        let mut among = allowed(&self.barred(column, row, placed));
+        keep_best(&mut among, &self.sums(&overlaps), used);
+        // As often as each would have been used if all were alike.
+        let average = (placed.len() as f64 / self.candidates.len() as f64).max(1.0);
+        let cut = |&c: &usize| self.cut(&overlaps, c) * (1.0 + CROWDING * f64::from(used[c]) / average);
+        let cuts: Vec<f64> = among.par_iter().map(cut).collect();
+        let least = cuts.iter().copied().fold(f64::INFINITY, f64::min);
+        let limit = (self.tolerance * overlaps.len() as f64).max(least * (1.0 + SLACK));
+        pick(&among, &cuts, limit, used, &mut ItemRng::new(self.seed, PURPOSE, at))
     }
 
-    /// Sum over the overlaps with placed neighbours of every candidate's mean error, in units, and how many overlaps those
-    /// are.
-    fn sums(&self, column: u32, row: u32, placed: &[u32]) -> (Vec<f64>, f64) {
+    /// Overlaps of the patch with neighbours that are placed already, on the torus.
+    fn overlaps(&self, column: u32, row: u32, placed: &[u32]) -> Vec<Overlap> {
         let (columns, rows) = (self.columns, self.rows);
         let here = row * columns + column;
-        let neighbour = |dx: u32, dy: u32| (row + dy) % rows * columns + (column + dx) % columns;
-        let known = |at: u32| placed.get(at as usize).map(|&c| c as usize);
-        let mut sums = vec![0.0; self.candidates.len()];
-        let mut overlaps = 0.0;
-        let mut add = |error: &dyn Fn(usize) -> u32, unit: f64| {
-            for (c, sum) in sums.iter_mut().enumerate() {
-                *sum += f64::from(error(c)) / unit;
-            }
-            overlaps += 1.0;
+        let side = |dx: u32, dy: u32, below: bool, after: bool| {
+            let at = (row + dy) % rows * columns + (column + dx) % columns;
+            // The only patch of a row or column is its own neighbour, on both sides by one overlap.
+            let own = after && at == here;
+            let other = placed.get(at as usize).map(|&c| c as usize);
+            (own || other.is_some()).then_some(Overlap { other, below, after })
         };
-        let [along_rows, along_columns] = self.units;
-        if let Some(left) = known(neighbour(columns - 1, 0)) {
-            let errors = self.errors.all_beside(left);
-            add(&|c| errors[c], along_rows);
+        [
+            side(columns - 1, 0, false, false),
+            side(0, rows - 1, true, false),
+            side(1, 0, false, true),
+            side(0, 1, true, true),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+
+    /// Sum over the overlaps of every candidate's mean error, in units.
+    fn sums(&self, overlaps: &[Overlap]) -> Vec<f64> {
+        let mut sums = vec![0.0; self.candidates.len()];
+        for overlap in overlaps {
+            let unit = self.units[usize::from(overlap.below)];
+            for (c, sum) in sums.iter_mut().enumerate() {
+                let (first, second) = overlap.pair(c);
+                let error =
+                    if overlap.below { self.errors.below(first, second) } else { self.errors.beside(first, second) };
+                *sum += f64::from(error) / unit;
+            }
         }
-        if let Some(up) = known(neighbour(0, rows - 1)) {
-            let errors = self.errors.all_below(up);
-            add(&|c| errors[c], along_columns);
-        }
-        // The only patch of a row or column is its own neighbour.
-        let (right, down) = (neighbour(1, 0), neighbour(0, 1));
-        if known(right).is_some() || right == here {
-            add(&|c| self.errors.beside(c, known(right).unwrap_or(c)), along_rows);
-        }
-        if known(down).is_some() || down == here {
-            add(&|c| self.errors.below(c, known(down).unwrap_or(c)), along_columns);
-        }
-        (sums, overlaps)
+        sums
+    }
+
+    /// Sum over the overlaps of a candidate's mean error along the best cut, in units.
+    fn cut(&self, overlaps: &[Overlap], candidate: usize) -> f64 {
+        let of = |overlap: &Overlap| {
+            let (first, second) = overlap.pair(candidate);
+            self.cuts.between(first, second, overlap.below) / self.units[usize::from(overlap.below)]
+        };
+        overlaps.iter().map(of).sum()
     }
 
     /// Candidates that show much the same as a patch near by, on the torus.
@@ -169,4 +193,30 @@ impl Choice<'_> {
         }
         barred
     }
+}
+
+/// An overlap of the patch to be placed with a neighbour.
+struct Overlap {
+    /// The neighbour's candidate; none where it is the patch itself.
+    other: Option<usize>,
+    /// Whether one lies below the other, or beside it.
+    below: bool,
+    /// Whether the neighbour comes after the patch, right of it or below it.
+    after: bool,
+}
+
+impl Overlap {
+    /// The left (upper) candidate and the right (lower) one, `candidate` being the patch's.
+    fn pair(&self, candidate: usize) -> (usize, usize) {
+        let other = self.other.unwrap_or(candidate);
+        if self.after { (candidate, other) } else { (other, candidate) }
+    }
+}
+
+/// Keeps the [`SHORTLIST`] candidates of least error, of equal ones the least used, then the first: where a map is flat,
+/// many are equal.
+fn keep_best(among: &mut Vec<usize>, errors: &[f64], used: &[u32]) {
+    among.sort_by(|&a, &b| errors[a].total_cmp(&errors[b]).then(used[a].cmp(&used[b])).then(a.cmp(&b)));
+    among.truncate(SHORTLIST);
+    among.sort_unstable();
 }

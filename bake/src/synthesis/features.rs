@@ -88,6 +88,17 @@ impl Features {
         self.texels[y as usize * self.width as usize + x as usize]
     }
 
+    /// Copies the texels from (x, y) on, along the row.
+    pub fn copy_row(&self, x: i32, y: i32, row: &mut [Feature]) {
+        let (width, first) = (self.width as usize, x.rem_euclid(self.width as i32) as usize);
+        let texels = &self.texels[y.rem_euclid(self.height as i32) as usize * width..][..width];
+        if first + row.len() <= width {
+            row.copy_from_slice(&texels[first..][..row.len()]);
+        } else {
+            row.iter_mut().zip(texels.iter().cycle().skip(first)).for_each(|(to, from)| *to = *from);
+        }
+    }
+
     /// Mean distance of neighbours inside the sample, along rows and along columns: the units of errors. One that is less
     /// than a hundredth of the other is taken as that, and both are 1 where nothing varies.
     pub fn neighbour_distance(&self) -> [f64; 2] {

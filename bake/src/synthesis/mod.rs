@@ -1,15 +1,16 @@
 //! A large surface from patches of a small sample: Tan, Zhu, Xu, Meng, Wang, Yan, *Real-Time Microstructure Rendering with
 //! MIP-mapped Normal Map Samples*, 2022, section 5.1.1. `docs/METHODS.md` has the equations and what deviates.
 //!
-//! [`bake()`] chooses patches ([`candidates`], [`strips`], [`choose`]) and cuts seams ([`seams`]) by the distance of
-//! [`features`]; [`mod@tiles`] does so for a surface without end. [`eval`] finds the sample texel, or the whole block, that
-//! the surface shows; [`mod@assemble`] is that for a whole piece. [`reference`](mod@reference) pastes patches into an
-//! image and tries every path, [`mod@measure`] tells what a surface is like, [`sections`] is it as a pack.
+//! [`bake()`] chooses patches ([`candidates`], [`strips`], [`cut_errors`], [`choose`]) and cuts seams ([`seams`]) by the
+//! distance of [`features`]; [`mod@tiles`] does so for a surface without end. [`eval`] finds the sample texel, or the whole
+//! block, that the surface shows; [`mod@assemble`] is that for a whole piece. [`reference`](mod@reference) pastes patches
+//! into an image and tries every path, [`mod@measure`] tells what a surface is like, [`sections`] is it as a pack.
 
 pub mod assemble;
 pub mod bake;
 pub mod candidates;
 pub mod choose;
+pub mod cut_errors;
 pub mod eval;
 mod eval_tiles;
 pub mod features;

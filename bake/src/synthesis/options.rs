@@ -12,7 +12,7 @@ pub const MAX_CANDIDATES: u32 = 4096;
 const FEATURE_BYTES: u64 = 12;
 
 /// Most bytes that the tables of a bake may take.
-const MAX_TABLE_BYTES: u64 = 320 << 20;
+const MAX_TABLE_BYTES: u64 = 400 << 20;
 
 /// The surface that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,8 +44,8 @@ pub struct SynthesisOptions {
     pub overlap: u32,
     /// Weight α of normals against Jacobians in Eq. 7, 0 to 1.
     pub alpha: f64,
-    /// Mean Eq. 7 distance over the overlaps up to which a patch is as good as any, in units of the mean distance of
-    /// neighbouring texels of the sample.
+    /// Mean Eq. 7 distance along the cuts up to which a patch is as good as any (of corner tiles: over the overlaps), in units
+    /// of the mean distance of neighbouring texels of the sample.
     pub error_tolerance: f64,
     /// Offsets are multiples of this; it divides the patch. Blocks of this edge then fall on blocks of the sample.
     pub alignment: u32,
@@ -62,7 +62,7 @@ impl Default for SynthesisOptions {
             patch: 64,
             overlap: 8,
             alpha: 0.9,
-            error_tolerance: 0.5,
+            error_tolerance: 0.02,
             alignment: 8,
             max_candidates: 1024,
             seed: 0,
@@ -212,7 +212,8 @@ impl SynthesisOptions {
         let candidates = u64::from(self.max_candidates).min(along(sample.width) * along(sample.height));
         let strip = u64::from(self.overlap) * u64::from(self.patch + self.overlap) * FEATURE_BYTES;
         let features = u64::from(sample.width) * u64::from(sample.height) * FEATURE_BYTES;
-        // Two strips of a candidate are held at a time; a tile has four sides. A pair has two errors and a likeness.
-        features + candidates * strip * 4 + candidates * candidates * 9
+        // Two strips of a candidate are held at a time; a tile has four sides. A pair has two errors, two
+        // sums along cuts and a likeness.
+        features + candidates * strip * 4 + candidates * candidates * 17
     }
 }

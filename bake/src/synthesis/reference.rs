@@ -3,7 +3,7 @@
 //! numbers with the bake.
 
 use super::bake::Synthesis;
-use super::choose::{PURPOSE, Radii};
+use super::choose::{CROWDING, PURPOSE, Radii, SHORTLIST};
 use super::options::SynthesisOptions;
 use crate::normal_map::NormalMap;
 use crate::rng::ItemRng;
@@ -114,15 +114,16 @@ pub fn choose(
     let mut placed: Vec<usize> = Vec::new();
     for at in 0..columns * rows {
         let (column, row) = (i64::from(at % columns), i64::from(at / columns));
+        let average = f64::max(1.0, f64::from(at) / offsets.len() as f64);
         // The patch at a place of the torus: the candidate itself at its own, none where none is placed yet.
         let patch_at = |x: i64, y: i64, candidate: usize| {
             let place = y.rem_euclid(i64::from(rows)) * i64::from(columns) + x.rem_euclid(i64::from(columns));
             if place == i64::from(at) { Some(candidate) } else { placed.get(place as usize).copied() }
         };
-        let mut errors = Vec::new();
+        let (mut errors, mut cuts) = (Vec::new(), Vec::new());
         let mut overlaps = 0.0;
         for candidate in 0..offsets.len() {
-            let mut error = 0.0;
+            let (mut error, mut cut) = (0.0, 0.0);
             overlaps = 0.0;
             // Left, above, right, below.
             for (dx, dy) in [(-1, 0), (0, -1), (1, 0), (0, 1)] {
@@ -137,9 +138,11 @@ pub fn choose(
                 let below = dy != 0;
                 let mean = overlap_mean(&features, options, offsets[first], offsets[second], below);
                 error += mean / units[usize::from(below)];
+                cut += cut_mean(&features, options, offsets[first], offsets[second], below) / units[usize::from(below)];
                 overlaps += 1.0;
             }
             errors.push(error);
+            cuts.push(cut * (1.0 + CROWDING * f64::from(used[candidate]) / average));
         }
         let barred: Vec<bool> = (0..offsets.len())
             .map(|candidate| {
@@ -156,9 +159,13 @@ pub fn choose(
             .collect();
         let all_barred = barred.iter().all(|&b| b);
         let allowed: Vec<usize> = (0..offsets.len()).filter(|&c| all_barred || !barred[c]).collect();
-        let least = allowed.iter().map(|&c| errors[c]).fold(f64::INFINITY, f64::min);
+        // How many are better tells whether a candidate is on the short list.
+        let rank = |c: usize| (errors[c], used[c], c);
+        let better = |c: usize| allowed.iter().filter(|&&d| rank(d) < rank(c)).count();
+        let listed: Vec<usize> = allowed.iter().copied().filter(|&c| better(c) < SHORTLIST).collect();
+        let least = listed.iter().map(|&c| cuts[c]).fold(f64::INFINITY, f64::min);
         let limit = (options.error_tolerance * overlaps).max(least * 1.1);
-        let good: Vec<usize> = allowed.into_iter().filter(|&c| errors[c] <= limit).collect();
+        let good: Vec<usize> = listed.into_iter().filter(|&c| cuts[c] <= limit).collect();
         let fewest = good.iter().map(|&c| used[c]).min().expect("the best is among them");
         let equal: Vec<usize> = good.into_iter().filter(|&c| used[c] == fewest).collect();
         let draw = ItemRng::new(options.seed, PURPOSE, at).below(equal.len() as u32);
@@ -191,6 +198,37 @@ pub fn overlap_mean(
         }
     }
     if count == 0.0 { 0.0 } else { f64::floor(sum / count) }
+}
+
+/// Mean distance along the best path through the overlap of two patches, the second right of the first or below it.
+pub fn cut_mean(
+    features: &ReferenceFeatures,
+    options: &SynthesisOptions,
+    first: [u16; 2],
+    second: [u16; 2],
+    below: bool,
+) -> f64 {
+    let (patch, overlap) = (i64::from(options.patch), i64::from(options.overlap));
+    // Least sums of paths from the place (along, across) on, from the last row upwards.
+    let mut rest = vec![0.0; overlap as usize];
+    for along in (-overlap..patch).rev() {
+        let texel = |across: i64| {
+            let (a, b) = if below {
+                ((along, across + patch), (along, across))
+            } else {
+                ((across + patch, along), (across, along))
+            };
+            let of = |offset: [u16; 2], (x, y): (i64, i64)| (i64::from(offset[0]) + x, i64::from(offset[1]) + y);
+            features.distance(of(first, a), of(second, b))
+        };
+        let on = |k: i64| {
+            let next = (k - 1).max(0)..=(k + 1).min(overlap - 1);
+            texel(k - overlap) + next.map(|k| rest[k as usize]).fold(f64::INFINITY, f64::min)
+        };
+        rest = (0..overlap).map(on).collect();
+    }
+    let least = rest.into_iter().fold(f64::INFINITY, f64::min);
+    if overlap == 0 { 0.0 } else { least / (patch + overlap) as f64 }
 }
 
 /// Share of a patch's texels that another shows too, moved the short way.

@@ -26,6 +26,25 @@ pub fn cut(cost: &[u32], overlap: usize) -> Vec<u32> {
     path
 }
 
+/// The sum of the path that [`cut`] finds; 0 where there is nothing to choose.
+pub fn least_sum(cost: &[u32], overlap: usize) -> u64 {
+    if overlap == 0 {
+        return 0;
+    }
+    // One entry on either side that no path goes through.
+    const NONE: u64 = u64::MAX / 2;
+    let mut best = vec![0u64; overlap + 2];
+    let mut next = vec![NONE; overlap + 2];
+    (best[0], best[overlap + 1]) = (NONE, NONE);
+    for row in cost.chunks_exact(overlap) {
+        for ((sum, before), &here) in next[1..=overlap].iter_mut().zip(best.windows(3)).zip(row) {
+            *sum = before[0].min(before[1]).min(before[2]) + u64::from(here);
+        }
+        std::mem::swap(&mut best, &mut next);
+    }
+    best.into_iter().min().unwrap_or(0)
+}
+
 /// The column of row `r`, beside `c` or at it, where sums are least.
 fn least(best: &[u64], r: usize, c: usize, overlap: usize) -> usize {
     leftmost(best, r, c.saturating_sub(1)..(c + 2).min(overlap), overlap)

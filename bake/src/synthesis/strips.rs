@@ -55,16 +55,6 @@ impl PairErrors {
     pub fn below(&self, upper: usize, lower: usize) -> u32 {
         self.below[upper * self.candidates + lower]
     }
-
-    /// Error of every candidate right of `left`.
-    pub fn all_beside(&self, left: usize) -> &[u32] {
-        &self.beside[left * self.candidates..][..self.candidates]
-    }
-
-    /// Error of every candidate below `upper`.
-    pub fn all_below(&self, upper: usize) -> &[u32] {
-        &self.below[upper * self.candidates..][..self.candidates]
-    }
 }
 
 type Span = std::ops::Range<i32>;

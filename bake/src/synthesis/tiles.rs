@@ -11,7 +11,7 @@
 
 use super::bake::{Synthesis, params};
 use super::candidates::{Candidates, Likeness};
-use super::choose::pick;
+use super::choose::{allowed, pick};
 use super::features::{COUNT, Feature, Features, distance};
 use super::options::SynthesisOptions;
 use super::seams::{cut, push_path};
@@ -260,12 +260,12 @@ impl Base<'_> {
                     .map(|c| corners.iter().chain(siblings).any(|&other| frame.candidates.alike(c, other)))
                     .collect();
                 let mut rng = ItemRng::new(options.seed, PURPOSE, picked.len() as u32);
-                let limit = |errors: &[f64]| {
-                    let mut sorted = errors.to_vec();
-                    sorted.sort_by(f64::total_cmp);
-                    tolerance.max(sorted[(sorted.len() - 1) / BEST_OF])
-                };
-                let chosen = pick(&errors, &barred, &used, limit, &mut rng);
+                let among = allowed(&barred);
+                let errors: Vec<f64> = among.iter().map(|&c| errors[c]).collect();
+                let mut sorted = errors.clone();
+                sorted.sort_by(f64::total_cmp);
+                let limit = tolerance.max(sorted[(sorted.len() - 1) / BEST_OF]);
+                let chosen = pick(&among, &errors, limit, &used, &mut rng);
                 // What shows nearly the same has been seen as well. Shares are by how many do, or candidates at the rim of
                 // the sample, which fewer resemble, would be preferred.
                 for (c, &likeness) in frame.candidates.likeness(chosen).iter().enumerate() {

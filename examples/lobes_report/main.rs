@@ -1,14 +1,19 @@
 //! MIP-mapped lobes: speed against error, as markdown on stdout; every number is measured in the run.
 //!
 //! `lobes_report DATA [--svg FILE] [--footprints N] [--part NAME]…` reads the real maps in `DATA/normals`, prints the tables
-//! and draws error over footprint size. Parts are footprints, settings, extremes and sizes; all when none is named.
+//! and draws error over footprint size. Parts are footprints, readings, settings, extremes and sizes; all when none is
+//! named.
 //! `just report` runs it.
+
+mod by_footprint;
+mod plot;
+mod readings;
 
 use glam::{DVec2, Vec2};
 use glint_bake::input::{Crop, InputOptions, load_normal_map};
 use glint_bake_core::lobes::options::{LobesOptions, NormalsChoice, default_cell};
 use glint_bake_core::lobes::quality::{FootprintErrors, Measured, footprint_errors};
-use glint_bake_core::lobes::query::{Detail, QuerySettings};
+use glint_bake_core::lobes::query::QuerySettings;
 use glint_bake_core::lobes::reference::Reference;
 use glint_bake_core::lobes::{BakedLobes, bake};
 use glint_bake_core::normal_map::NormalMap;
@@ -54,7 +59,10 @@ fn main() {
     let wanted = |part: &str| parts.is_empty() || parts.iter().any(|name| name == part);
     let folder = Path::new(&data).join("normals");
     if wanted("footprints") {
-        footprint_tables(&folder, footprints, svg);
+        by_footprint::tables(&folder, footprints, svg);
+    }
+    if wanted("readings") {
+        readings::table(&folder, (footprints / 4).max(2));
     }
     if wanted("settings") {
         settings(&folder, (footprints / 4).max(2));
@@ -64,29 +72,6 @@ fn main() {
     }
     if wanted("sizes") {
         sizes(&folder);
-    }
-}
-
-/// The head of the report, error by footprint on every map, and the plot of it.
-fn footprint_tables(folder: &Path, footprints: u32, svg: Option<String>) {
-    println!("# MIP-mapped lobes: speed against error\n");
-    println!("Written by `just report`; do not edit. The plot is [lobes-report.svg](lobes-report.svg).\n");
-    println!(
-        "E₁ = ∫|D̂ − D| / ∫D over the disk in per cent, against the exact integral in f64, over {footprints} seeded footprints \
-         a size (means unless told otherwise); σ is the footprint's standard deviation in texels, σ_r = {ROUGHNESS}. Squares of \
-         256² texels (flakes 128²) from the maps' upper left corner, repeated."
-    );
-    explain_tables();
-    let all: Vec<Table> = MAPS
-        .iter()
-        .map(|map| {
-            let table = by_footprint(folder, map, footprints);
-            print_table(&table);
-            table
-        })
-        .collect();
-    if let Some(file) = svg {
-        std::fs::write(file, plot(&all)).expect("writing the plot");
     }
 }
 
@@ -108,79 +93,8 @@ fn chosen(lobes: &BakedLobes) -> (&BakedLobes, Measured) {
     (lobes, Measured::Chosen(QuerySettings::default()))
 }
 
-/// What is measured at every footprint size of a map.
-const COLUMNS: usize = 6;
-
-struct Table {
-    name: &'static str,
-    rows: Vec<(f64, Vec<FootprintErrors>)>,
-}
-
-fn by_footprint(folder: &Path, &(name, file, edge): &(&'static str, &str, u32), footprints: u32) -> Table {
-    let map = load(folder, file, edge);
-    let ours = baked(&map, &options());
-    let of = |merge, seeds| baked(&map, &LobesOptions { merge, seeds, ..options() });
-    let (paper, paper_one, moments) = (of(Merge::KMeans, 4), of(Merge::KMeans, 1), of(Merge::Moments, 4));
-    let finest = Detail::Cells(0);
-    let variants = [
-        chosen(&ours),
-        chosen(&paper),
-        chosen(&paper_one),
-        chosen(&moments),
-        (&ours, Measured::At(finest)),
-        (&paper, Measured::At(finest)),
-    ];
-    let reference = Reference::new(&map, Filter::Linear, ROUGHNESS);
-    let rows = SIGMAS.iter().map(|&sigma| {
-        let places = sweep::footprints(sigma, 1.0, DVec2::splat(edge as f64), footprints, SEED);
-        // One level of small cells under a large footprint is measured no further than it says something.
-        let count = if sigma <= 8.0 { COLUMNS } else { COLUMNS - 2 };
-        (sigma, footprint_errors(&reference, &variants[..count], &places, STRIDE))
-    });
-    Table { name, rows: rows.collect() }
-}
-
 fn percent(errors: &FootprintErrors) -> String {
     format!("{:.2}", 100.0 * errors.e1.mean)
-}
-
-fn explain_tables() {
-    println!("\n## By footprint\n");
-    println!(
-        "*ours*: Runnalls' merging from four seeds a texel, k = 32, cells of 8 texels, 16 bytes a lobe, levels as the evaluator \
-         chooses them. *k-means*: the paper's, averaged parameters, from four seeds and from one, read at the same levels. \
-         *ratio*: ours over the better of the two. *moments*: k-means with moment matching. Up to σ = 2 only the map itself is read, so that reductions do not \
-         differ; *level 1* is the finest stored level alone, ours and k-means from four seeds."
-    );
-}
-
-fn print_table(table: &Table) {
-    println!("\n### {}\n", table.name);
-    println!(
-        "| σ | ours | p95 | worst | energy | k-means 4 | k-means 1 | ratio | moments | level 1 | level 1 k-means | lobes | most |"
-    );
-    println!("{}", "| --: ".repeat(13) + "|");
-    for (sigma, row) in &table.rows {
-        let better = row[1].e1.mean.min(row[2].e1.mean);
-        let level = if row.len() == COLUMNS {
-            format!("{} | {}", percent(&row[4]), percent(&row[5]))
-        } else {
-            " | ".to_owned()
-        };
-        println!(
-            "| {sigma} | **{}** | {:.2} | {:.2} | {:.1e} | {} | {} | {:.2} | {} | {level} | {:.0} | {} |",
-            percent(&row[0]),
-            100.0 * row[0].e1.p95,
-            100.0 * row[0].e1.worst,
-            row[0].energy.mean,
-            percent(&row[1]),
-            percent(&row[2]),
-            row[0].e1.mean / better,
-            percent(&row[3]),
-            row[0].lobes,
-            row[0].most_lobes,
-        );
-    }
 }
 
 /// Bytes, bake, cost and error of several settings, mean over the maps.
@@ -345,53 +259,4 @@ fn peak_mib() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find(|line| line.starts_with("VmHWM"));
     line.and_then(|line| line.split_whitespace().nth(1)?.parse::<f64>().ok()).map_or(f64::NAN, |kib| kib / 1024.0)
-}
-
-/// E₁ over footprint size, a panel a map: ours and the better k-means.
-fn plot(all: &[Table]) -> String {
-    let (width, height) = (300.0, 190.0);
-    let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"sans-serif\" font-size=\"11\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-        3.0 * width + 20.0,
-        2.0 * height + 40.0
-    );
-    for (at, table) in all.iter().enumerate() {
-        let (left, top) = (45.0 + (at % 3) as f64 * width, 30.0 + (at / 3) as f64 * height);
-        let (w, h) = (width - 60.0, height - 60.0);
-        let x = |sigma: f64| left + (sigma / 0.5).log2() / 6.0 * w;
-        let y = |e1: f64| top + h - (e1.clamp(0.001, 1.0) / 0.001).log10() / 3.0 * h;
-        let _ = writeln!(out, "<text x=\"{left}\" y=\"{}\" font-weight=\"bold\">{}</text>", top - 8.0, table.name);
-        for (value, label) in [(0.001, "0.1 %"), (0.01, "1 %"), (0.1, "10 %"), (1.0, "100 %")] {
-            let line = y(value);
-            let _ = writeln!(out, "<path d=\"M{left} {line}h{w}\" stroke=\"#ddd\"/>");
-            let _ = writeln!(out, "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{label}</text>", left - 4.0, line + 4.0);
-        }
-        for sigma in [0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0] {
-            let (tick, foot) = (x(sigma), top + h + 14.0);
-            let _ = writeln!(out, "<text x=\"{tick}\" y=\"{foot}\" text-anchor=\"middle\">{sigma}</text>");
-        }
-        let mut line = |colour: &str, value: &dyn Fn(&[FootprintErrors]) -> f64| {
-            let points: Vec<String> =
-                table.rows.iter().map(|(sigma, row)| format!("{:.1},{:.1}", x(*sigma), y(value(row)))).collect();
-            let _ = writeln!(
-                out,
-                "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\"/>",
-                points.join(" ")
-            );
-        };
-        line("#c33", &|row| row[1].e1.mean.min(row[2].e1.mean));
-        line("#e90", &|row| row[3].e1.mean);
-        line("#26c", &|row| row[0].e1.mean);
-    }
-    let foot = 2.0 * height + 20.0;
-    for (x, colour, label) in [
-        (45.0, "#26c", "ours"),
-        (120.0, "#e90", "k-means, moments"),
-        (270.0, "#c33", "k-means, averaged (the better of 1 and 4 seeds)"),
-    ] {
-        let _ = writeln!(out, "<text x=\"{x}\" y=\"{foot}\" fill=\"{colour}\">{label}</text>");
-    }
-    let _ = writeln!(out, "<text x=\"600\" y=\"{foot}\">E₁ over the footprint's σ in texels</text>\n</svg>");
-    out
 }
