@@ -148,9 +148,9 @@ fn glint_lobes_default_settings() -> GlintLobesSettings {
     return GlintLobesSettings(0.7, 0.25, 0.375, 0.25, 32.0, 1024.0, 3.0, 0.5);
 }
 
-// Few lobes, for pictures: about three cells of the map's lobes, or a dozen boxes, a footprint.
+// Few lobes, for pictures: about two cells of the map's lobes, or some twenty boxes, a footprint.
 fn glint_lobes_realtime_settings() -> GlintLobesSettings {
-    return GlintLobesSettings(0.18, 0.22, 0.24, 1.1, 5.0, 48.0, 1.8, 0.15);
+    return GlintLobesSettings(0.18, 0.22, 0.24, 1.1, 2.0, 48.0, 1.8, 0.15);
 }
 
 // x y' - y x'.

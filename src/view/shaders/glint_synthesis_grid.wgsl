@@ -21,8 +21,10 @@ fn glint_synthesis_place(synthesis: GlintSynthesis, x: i32, y: i32) -> GlintSynt
     let by = glint_floor_div(in_y.x, rows).y;
     let near_right = in_x.y >= near;
     var place = GlintSynthesisPlace(u32(by * columns + bx), in_x.y, in_y.y);
-    // Neighbours by bits, 1 right and 2 below, the last in raster order first. Most texels have none.
+    // Neighbours by bits, 1 right and 2 below, the last in raster order first. Most texels have none. That to the right and below
+    // has two cuts to pass, one a round.
     var neighbour = select(0, 1, near_right) + select(0, 2, in_y.y >= near);
+    var upper = neighbour == 2;
     while neighbour > 0 {
         let right = (neighbour & 1) == 1;
         let below = neighbour >= 2;
@@ -31,12 +33,18 @@ fn glint_synthesis_place(synthesis: GlintSynthesis, x: i32, y: i32) -> GlintSynt
         let patch_index = u32(row * columns + column);
         let lx = in_x.y - select(0, edge, right);
         let ly = in_y.y - select(0, edge, below);
-        if (!right || lx >= glint_synthesis_cut(synthesis, patch_index, 0u, ly))
-            && (!below || ly >= glint_synthesis_cut(synthesis, patch_index, 1u, lx)) {
+        let cut = glint_synthesis_cut(synthesis, patch_index, select(0u, 1u, upper), select(ly, lx, upper));
+        let claims = select(lx, ly, upper) >= cut;
+        if claims && (upper || !below) {
             place = GlintSynthesisPlace(patch_index, lx, ly);
             break;
         }
-        neighbour = select(0, neighbour - 1, near_right);
+        if claims {
+            upper = true;
+        } else {
+            neighbour = select(0, neighbour - 1, near_right);
+            upper = neighbour == 2;
+        }
     }
     return place;
 }

@@ -59,7 +59,8 @@ fn glint_synthesis_path_entry(synthesis: GlintSynthesis, first: u32, k: u32) -> 
     if synthesis.path_bits == 0u {
         return 0;
     }
-    let at = u32(glint_floor_div(i32(k), i32(synthesis.path_per_word)).x);
+    // k is less than 2^20: half a step keeps the quotient off the whole numbers that rounding could miss.
+    let at = u32((f32(k) + 0.5) / f32(synthesis.path_per_word));
     let word = glint_synthesis_seam_word(first + at);
     let shift = (k - at * synthesis.path_per_word) * synthesis.path_bits;
     return i32((word >> shift) & ((1u << synthesis.path_bits) - 1u));
