@@ -137,18 +137,13 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
         surface: median(times.iter().map(|time| time.surface).collect()),
         frame: median(times.iter().map(|time| time.frame).collect()),
     });
-    // The same footprints in a small picture: it shows a part of the surface, not all of it by larger pixels.
-    let small = |reference| {
-        let mut view = View { size: settings.error_size, ..of(shown, reference) };
-        view.scene.uv_scale *= settings.error_size[1] as f32 / setup.view.size[1] as f32;
-        view
-    };
-    let loads = mean_loads(gpu, renderer, &small(false))?;
+    let loads = mean_loads(gpu, renderer, &View { size: settings.error_size, ..of(shown, false) })?;
     let source = glint_shaders::program(shown.method.name(), &shown.files);
     let instructions = glint_shaders::translate::spirv_instructions(&source).map_err(GpuError::Failed)?;
     // Glints under an environment have no reference but their mean over seeds.
     let has_reference = shown.method.usual_light() != LightKind::Environment;
     let error = if has_reference && settings.reference_samples > 0 {
+        let small = |reference| View { size: settings.error_size, ..of(shown, reference) };
         Some(error_of(gpu, renderer, &small(false), &small(true), settings.reference_samples)?)
     } else {
         None
