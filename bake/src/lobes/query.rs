@@ -40,16 +40,16 @@ pub struct QuerySettings {
 }
 
 impl QuerySettings {
-    /// Few lobes, for pictures: about three cells of the map's lobes, or a dozen boxes, a footprint. What that costs in error
+    /// Few lobes, for pictures: about two cells of the map's lobes, or some twenty boxes, a footprint. What that costs in error
     /// stands in docs/viewer-report.md beside the time.
     pub fn realtime() -> QuerySettings {
         QuerySettings {
             cell_sigmas: 0.18,
-            boxes_until: 0.1,
-            cells_from: 0.15,
-            box_sigmas: 0.7,
-            max_cells: 5.0,
-            max_boxes: 32.0,
+            boxes_until: 0.22,
+            cells_from: 0.24,
+            box_sigmas: 1.1,
+            max_cells: 2.0,
+            max_boxes: 48.0,
             reach: 1.8,
             blend: 0.15,
         }
@@ -232,9 +232,10 @@ impl BakedLobes {
         // Boxes end by the footprint's size, or where there would be more of them than allowed, be they whole texels.
         let by_size = libm::log2f(sigma / (finest * settings.boxes_until))
             / libm::log2f(settings.cells_from / settings.boxes_until);
-        let by_count = 1.0 + libm::log2f(std::f32::consts::PI * (a + h) * (b + h) / settings.max_boxes);
+        let by_count =
+            1.0 + libm::log2f(std::f32::consts::PI * (a + h) * (b + h) / settings.max_boxes) / settings.blend;
         let boxes = by_size.max(by_count).clamp(0.0, 1.0);
-        let lambda = cells.clamp(boxes, (levels + 1) as f32);
+        let lambda = if boxes < 1.0 { boxes } else { cells.clamp(1.0, (levels + 1) as f32) };
         let finer = (lambda.floor() as usize).min(levels);
         let detail = |level: usize| match level {
             0 => Detail::Boxes(self.box_edge(frame, settings)),

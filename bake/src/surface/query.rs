@@ -34,7 +34,8 @@ pub struct SurfaceSettings {
     pub box_range: f32,
     /// Footprint's major deviation, in texels, up to which boxes at seams are halved along both axes.
     pub halves_until: f32,
-    /// Whether a block that seams cross is read as that of the patch at its middle, as if there were no seams.
+    /// Whether a block that seams cross is read as that of the patch at its middle, as if there were no seams, and a box as
+    /// that of the patch at its first texel.
     pub whole_blocks: bool,
 }
 
@@ -232,7 +233,8 @@ impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
 
     /// Adds the box of this width and height around `centre`.
     fn add_box(&mut self, centre: Vec2, size: Vec2) {
-        let (normal, jacobian, twist) = self.patch_at(centre);
+        let (normal, jacobian, twist) =
+            if self.settings.whole_blocks { self.nominal_patch_at(centre) } else { self.patch_at(centre) };
         self.add_lobe(&eval::box_lobe(normal, jacobian, twist, size), centre);
     }
 
@@ -262,6 +264,17 @@ impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
             let [x, y] = self.on_surface([i, j]);
             let (sx, sy) = self.surface.synthesis.source_texel(x, y);
             self.surface.lobes.texel(sx as i32, sy as i32)
+        })
+    }
+
+    /// The same as if the patch that shows the first of the texels around the place showed all of them.
+    fn nominal_patch_at(&self, u: Vec2) -> (Vec2, Mat2, Vec2) {
+        let first = (u - self.box_origin()).floor();
+        let (i0, j0) = (first.x as i32, first.y as i32);
+        let [x, y] = self.on_surface([i0, j0]);
+        let (sx, sy) = self.surface.synthesis.source_texel(x, y);
+        bilinear(self.surface.lobes.params.filter, u, |i, j| {
+            self.surface.lobes.texel(sx as i32 + i - i0, sy as i32 + j - j0)
         })
     }
 

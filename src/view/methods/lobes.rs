@@ -172,6 +172,30 @@ pub fn upload_surface(gpu: &Gpu, surface: &Surface) -> Resources {
     resources(gpu, &surface.lobes, Some(&surface.synthesis))
 }
 
+/// Each texel of the normals and the one below it as the map is wrapped, so that a bilinear patch is two loads: stored numbers,
+/// x in the lower half of a word.
+fn normal_pairs(lobes: &BakedLobes) -> Vec<[u32; 2]> {
+    let params = &lobes.params;
+    let (width, height) = (params.width as usize, params.height as usize);
+    let after_last = match params.wrap {
+        Wrap::Repeat => 0,
+        Wrap::Clamp => height - 1,
+    };
+    let bytes = params.normals.texel_bytes();
+    let word = |column: usize, row: usize| {
+        let texel = &lobes.normals[(row * width + column) * bytes..][..bytes];
+        match params.normals {
+            NormalsStorage::Snorm16 => u32::from_le_bytes([texel[0], texel[1], texel[2], texel[3]]),
+            NormalsStorage::Unorm8 => u32::from(texel[0]) | u32::from(texel[1]) << 16,
+        }
+    };
+    let below = |row: usize| if row + 1 < height { row + 1 } else { after_last };
+    (0..width * height)
+        .map(|at| (at % width, at / width))
+        .map(|(column, row)| [word(column, row), word(column, below(row))])
+        .collect()
+}
+
 fn resources(gpu: &Gpu, lobes: &BakedLobes, synthesis: Option<&Synthesis>) -> Resources {
     let params = &lobes.params;
     let mut levels = [LevelUniform::default(); LEVELS];
@@ -188,7 +212,7 @@ fn resources(gpu: &Gpu, lobes: &BakedLobes, synthesis: Option<&Synthesis>) -> Re
     let mut set = ResourceSet::default();
     set.uniform(gpu, bytemuck::bytes_of(&uniform));
     set.storage(gpu, &lobes.lobes);
-    set.storage(gpu, &lobes.normals);
+    set.storage(gpu, bytemuck::cast_slice(&normal_pairs(lobes)));
     set.storage(gpu, bytemuck::cast_slice(offsets));
     set.storage(gpu, bytemuck::cast_slice(seams));
     set.finish(gpu)

@@ -10,8 +10,8 @@ struct LobesData {
 @group(1) @binding(0) var<uniform> lobes: LobesData;
 // Section LOBE as it is in the pack.
 @group(1) @binding(1) var<storage, read> lobes_records: array<vec4u>;
-// Section LONM as it is in the pack.
-@group(1) @binding(2) var<storage, read> lobes_normals: array<u32>;
+// Section LONM: each texel and the one below it.
+@group(1) @binding(2) var<storage, read> lobes_normals: array<vec2u>;
 // Section SYPO as it is in the pack: x in the lower half; at least one element.
 @group(1) @binding(3) var<storage, read> synthesis_offsets: array<u32>;
 // Section SYSE as it is in the pack; at least one element.
@@ -26,7 +26,7 @@ fn glint_lobes_words(index: u32) -> vec4u {
     return lobes_records[index];
 }
 
-fn glint_lobes_normals_word(index: u32) -> u32 {
+fn glint_lobes_normals_pair(index: u32) -> vec2u {
     bound_loads += 1u;
     return lobes_normals[index];
 }

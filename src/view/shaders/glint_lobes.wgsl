@@ -9,8 +9,9 @@
 //   fn glint_lobes_lobe(map: GlintLobesMap, level: GlintLobesLevel, index: u32) -> GlintLobe
 //                                                           a lobe by its index among all: by glint_lobes_packed.wgsl or
 //                                                           glint_lobes_half.wgsl, as the pack stores them
-//   fn glint_lobes_normals_word(index: u32) -> u32          word of the section LONM, row by row: a texel of 16 bits a channel,
-//                                                           or two texels of 8, the first in the lower half
+//   fn glint_lobes_normals_pair(index: u32) -> vec2u        a texel of the section LONM, row by row, and the one below it as the
+//                                                           map is wrapped: stored numbers, sign-extended to 16 bits, x in
+//                                                           the lower half
 
 const GLINT_LOBES_PI: f32 = 3.14159265;
 // 1 / (2 pi).
@@ -147,9 +148,9 @@ fn glint_lobes_default_settings() -> GlintLobesSettings {
     return GlintLobesSettings(0.7, 0.25, 0.375, 0.25, 32.0, 1024.0, 3.0, 0.5);
 }
 
-// Few lobes, for pictures: about three cells of the map's lobes, or a dozen boxes, a footprint.
+// Few lobes, for pictures: about two cells of the map's lobes, or some twenty boxes, a footprint.
 fn glint_lobes_realtime_settings() -> GlintLobesSettings {
-    return GlintLobesSettings(0.18, 0.1, 0.15, 0.7, 5.0, 32.0, 1.8, 0.15);
+    return GlintLobesSettings(0.18, 0.22, 0.24, 1.1, 2.0, 48.0, 1.8, 0.15);
 }
 
 // x y' - y x'.
@@ -294,12 +295,20 @@ fn glint_lobes_seen(query: GlintLobesQuery, lobe: GlintLobe, d: vec2f) -> GlintS
     let near = far <= GLINT_LOBES_CUT;
     let density = select(0.0, share * inverseSqrt(volume) * exp(-0.5 * far) * GLINT_LOBES_PEAK, near);
     // Five standard deviations from the rim there is less than 4e-6 beyond it. The twin takes the trace for the largest
-    // variance, which leaves more lobes to a sum that comes to the same.
+    // variance, here it is a row's sum; both leave more lobes to a sum that comes to the same.
     let to_rim = 1.0 - length(mean);
-    let half_gap = 0.5 * (xx - yy);
-    let largest = 0.5 * (xx + yy) + sqrt(half_gap * half_gap + xy * xy);
-    let inside = to_rim > 0.0 && to_rim * to_rim > 25.0 * largest;
+    let inside = to_rim > 0.0 && to_rim * to_rim > 25.0 * (max(xx, yy) + abs(xy));
     return GlintSeenLobe(share, density, near && !inside, mean, vec3f(xx, xy, yy));
+}
+
+// First and last box of a row of boxes of `edge` texels, the row's low edge at `y`, under a footprint; boxes begin at `origin`.
+fn glint_lobes_row(frame: GlintLobesFrame, reach: f32, origin: f32, edge: f32, y: f32) -> vec2i {
+    let span = glint_lobes_span_x(frame, reach, y, y + edge);
+    if !(span.x <= span.y) {
+        return vec2i(1, 0);
+    }
+    let ends = vec2i(floor((span - origin) / edge));
+    return vec2i(ends.x, min(ends.y, ends.x + i32(GLINT_LOBES_MOST_STEPS)));
 }
 
 // Lobe of a box of the filtered map, `size` texels wide and high: exact moments.

@@ -22,20 +22,28 @@ struct GlintLobesSlot {
     copy: f32,
 }
 
-// Projected normal of texel (i, j), which lies less than the map's size beyond its edges; wrapped or clamped.
-fn glint_lobes_texel(map: GlintLobesMap, i: i32, j: i32) -> vec2f {
+// A texel of the map that lies less than the map's size beyond its edges; wrapped or clamped.
+fn glint_lobes_wrapped(map: GlintLobesMap, texel: vec2i) -> vec2i {
     let size = vec2i(i32(map.width), i32(map.height));
-    var at = vec2i(i, j);
-    if map.wrap == GLINT_WRAP_REPEAT {
-        at += select(vec2i(0), size, at < vec2i(0)) - select(vec2i(0), size, at >= size);
-    }
-    at = clamp(at, vec2i(0), size - 1);
-    let index = u32(at.y) * map.width + u32(at.x);
-    if map.normals == GLINT_LOBES_SNORM16 {
-        return unpack2x16snorm(glint_lobes_normals_word(index));
-    }
-    let pair = unpack4x8unorm(glint_lobes_normals_word(index >> 1u));
-    return select(pair.xy, pair.zw, (index & 1u) == 1u) * 2.0 - 1.0;
+    let moved = texel + select(vec2i(0), size, texel < vec2i(0)) - select(vec2i(0), size, texel >= size);
+    return clamp(select(texel, moved, map.wrap == GLINT_WRAP_REPEAT), vec2i(0), size - 1);
+}
+
+// Factor and offset of stored numbers of normals.
+fn glint_lobes_normals_scale(map: GlintLobesMap) -> vec2f {
+    return select(vec2f(2.0 / 255.0, -1.0), vec2f(1.0 / 32767.0, 0.0), map.normals == GLINT_LOBES_SNORM16);
+}
+
+// Stored numbers of a texel's normal.
+fn glint_lobes_codes(word: u32) -> vec2f {
+    return vec2f(f32(bitcast<i32>(word << 16u) >> 16u), f32(bitcast<i32>(word) >> 16u));
+}
+
+// Projected normal of texel (i, j), which lies less than the map's size beyond its edges.
+fn glint_lobes_texel(map: GlintLobesMap, i: i32, j: i32) -> vec2f {
+    let at = glint_lobes_wrapped(map, vec2i(i, j));
+    let scale = glint_lobes_normals_scale(map);
+    return glint_lobes_codes(glint_lobes_normals_pair(u32(at.y) * map.width + u32(at.x)).x) * scale.x + scale.y;
 }
 
 // A bilinear patch from its texels, at the fraction `f`.
@@ -47,22 +55,34 @@ fn glint_lobes_bilinear(s00: vec2f, s10: vec2f, s01: vec2f, s11: vec2f, f: vec2f
     return GlintLobesPatch(top + (bottom - top) * f.y, mat2x2f(along, bottom - top), twist);
 }
 
+// The bilinear patch from texel `at` on, which lies less than the map's size beyond its edges, at the fraction `f`. A nearest
+// texel has no slopes.
+fn glint_lobes_patch(map: GlintLobesMap, at: vec2i, f: vec2f) -> GlintLobesPatch {
+    let place = glint_lobes_wrapped(map, at);
+    let beside = glint_lobes_wrapped(map, at + vec2i(1, 0)).x;
+    let row = u32(place.y) * map.width;
+    let left = glint_lobes_normals_pair(row + u32(place.x));
+    let right = glint_lobes_normals_pair(row + u32(beside));
+    // Above the first row of a clamped map lies that row once more.
+    let again = map.wrap == GLINT_WRAP_CLAMP && at.y < 0;
+    let codes = glint_lobes_bilinear(
+        glint_lobes_codes(left.x),
+        glint_lobes_codes(right.x),
+        glint_lobes_codes(select(left.y, left.x, again)),
+        glint_lobes_codes(select(right.y, right.x, again)),
+        f,
+    );
+    let scale = glint_lobes_normals_scale(map);
+    let slope = select(scale.x, 0.0, map.nearest == 1u);
+    return GlintLobesPatch(codes.normal * scale.x + scale.y, codes.jacobian * slope, codes.twist * slope);
+}
+
 // Projected normal, Jacobian and twist of the filtered map at a place in it.
 fn glint_lobes_surface_at(map: GlintLobesMap, u: vec2f) -> GlintLobesPatch {
-    if map.nearest == 1u {
-        let at = vec2i(floor(u));
-        return GlintLobesPatch(glint_lobes_texel(map, at.x, at.y), mat2x2f(), vec2f(0.0));
-    }
-    let p = u - 0.5;
+    let nearest = map.nearest == 1u;
+    let p = select(u - 0.5, u, nearest);
     let cell = floor(p);
-    let at = vec2i(cell);
-    return glint_lobes_bilinear(
-        glint_lobes_texel(map, at.x, at.y),
-        glint_lobes_texel(map, at.x + 1, at.y),
-        glint_lobes_texel(map, at.x, at.y + 1),
-        glint_lobes_texel(map, at.x + 1, at.y + 1),
-        p - cell,
-    );
+    return glint_lobes_patch(map, vec2i(cell), select(p - cell, vec2f(0.0), nearest));
 }
 
 // Edge of the boxes that a footprint is resolved in: a power of two, at most a texel.
@@ -99,10 +119,10 @@ fn glint_lobes_lod(map: GlintLobesMap, frame: GlintLobesFrame, settings: GlintLo
     let cells = 1.0 + log2(sigma / (finest * settings.cell_sigmas));
     // Boxes end by the footprint's size, or where there would be more of them than allowed, be they whole texels.
     let by_size = log2(sigma / (finest * settings.boxes_until)) / log2(settings.cells_from / settings.boxes_until);
-    let by_count = 1.0 + log2(GLINT_LOBES_PI * (a + h) * (b + h) / settings.max_boxes);
+    let by_count = 1.0 + log2(GLINT_LOBES_PI * (a + h) * (b + h) / settings.max_boxes) / settings.blend;
     let boxes = clamp(max(by_size, by_count), 0.0, 1.0);
     let most = f32(map.levels + 1u);
-    let lambda = min(max(cells, boxes), most);
+    let lambda = select(clamp(cells, 1.0, most), boxes, boxes < 1.0);
     let finer = min(floor(lambda), f32(map.levels));
     var fraction = lambda - finer;
     var box_edge = 1.0;
@@ -137,13 +157,14 @@ fn glint_lobes_cell(
     first: u32,
     corner: vec2f,
 ) -> vec2f {
+    let d = query.frame.mean - corner;
     var sum = vec2f(0.0);
     var k = 0u;
     while k < map.lobes_per_cell {
         var seen = GlintSeenLobe();
         while k < map.lobes_per_cell && !seen.cut {
             let lobe = glint_lobes_lobe(map, level, first + k);
-            seen = glint_lobes_seen(query, lobe, query.frame.mean - corner - lobe.position);
+            seen = glint_lobes_seen(query, lobe, d - lobe.position);
             sum += vec2f(select(seen.density, 0.0, seen.cut), seen.share);
             k += 1u;
         }
@@ -205,39 +226,38 @@ fn glint_lobes_cells(
     return sum;
 }
 
-// Density and share of boxes of `edge` texels under the footprint on the repeated map.
+// Density and share of boxes of `edge` texels under the footprint on the repeated map; as in a cell, the loops end where a box
+// needs the mass inside the disk.
 fn glint_lobes_boxes(map: GlintLobesMap, query: GlintLobesQuery, edge: f32, reach: f32) -> vec2f {
     let frame = query.frame;
     let size = vec2f(f32(map.width), f32(map.height));
     // Boxes of a bilinear map begin at texel centres, where its patches do.
     let origin = select(0.5, 0.0, map.nearest == 1u);
     let top = glint_lobes_reach_y(frame, reach);
-    let first = i32(floor((frame.mean.y - top - origin) / edge));
-    let last = min(i32(floor((frame.mean.y + top - origin) / edge)), first + i32(GLINT_LOBES_MOST_STEPS));
+    var j = i32(floor((frame.mean.y - top - origin) / edge));
+    let last = min(i32(floor((frame.mean.y + top - origin) / edge)), j + i32(GLINT_LOBES_MOST_STEPS));
+    var row = glint_lobes_row(frame, reach, origin, edge, origin + f32(j) * edge);
     var sum = vec2f(0.0);
-    for (var j = first; j <= last; j++) {
-        let y = origin + (f32(j) + 0.5) * edge;
-        let span = glint_lobes_span_x(frame, reach, y - 0.5 * edge, y + 0.5 * edge);
-        if span.x <= span.y {
-            let copy_y = floor(y / size.y) * size.y;
-            let begin = i32(floor((span.x - origin) / edge));
-            let end = min(i32(floor((span.y - origin) / edge)), begin + i32(GLINT_LOBES_MOST_STEPS));
-            var i = begin;
-            while i <= end {
-                var seen = GlintSeenLobe();
-                while i <= end && !seen.cut {
-                    let x = origin + (f32(i) + 0.5) * edge;
-                    let copy = vec2f(floor(x / size.x) * size.x, copy_y);
-                    let centre = vec2f(x, y) - copy;
-                    let lobe = glint_lobes_box_lobe(glint_lobes_surface_at(map, centre), vec2f(edge));
-                    seen = glint_lobes_seen(query, lobe, frame.mean - centre - copy);
-                    sum += vec2f(select(seen.density, 0.0, seen.cut), seen.share);
-                    i += 1;
-                }
-                if seen.cut {
-                    sum.x += seen.density / glint_lobes_inside_disk(seen.mean, seen.covariance);
-                }
+    while j <= last {
+        var seen = GlintSeenLobe();
+        while j <= last && !seen.cut {
+            let y = origin + (f32(j) + 0.5) * edge;
+            while row.x <= row.y && !seen.cut {
+                let place = vec2f(origin + (f32(row.x) + 0.5) * edge, y);
+                let copy = floor(place / size) * size;
+                let centre = place - copy;
+                let lobe = glint_lobes_box_lobe(glint_lobes_surface_at(map, centre), vec2f(edge));
+                seen = glint_lobes_seen(query, lobe, frame.mean - centre - copy);
+                sum += vec2f(select(seen.density, 0.0, seen.cut), seen.share);
+                row.x += 1;
             }
+            if !seen.cut {
+                j += 1;
+                row = glint_lobes_row(frame, reach, origin, edge, origin + f32(j) * edge);
+            }
+        }
+        if seen.cut {
+            sum.x += seen.density / glint_lobes_inside_disk(seen.mean, seen.covariance);
         }
     }
     return sum;

@@ -4,8 +4,10 @@
 //
 // Accessors that the including program defines, besides those of glint_lobes.wgsl and glint_synthesis.wgsl:
 //   fn glint_surface_block(q: GlintSurfaceQuery, level: u32, at: vec2i) -> vec2f
-//       density and share of the block of a level's edge whose first texel lies `at` from the origin: by
-//       glint_surface_seams.wgsl, which follows every seam, or glint_surface_blocks.wgsl, which follows none
+//       density and share of the block of a level's edge whose first texel lies `at` from the origin, and
+//   fn glint_surface_box_patch(q: GlintSurfaceQuery, u: vec2f) -> GlintLobesPatch
+//       normal, Jacobian and twist of a box around `u`: both by glint_surface_seams.wgsl, which follows every seam, or
+//       glint_surface_blocks.wgsl, which follows none
 
 const GLINT_SURFACE_MOST_TEXELS: i32 = 1073741824; // 2^30
 
@@ -96,18 +98,32 @@ fn glint_surface_patch_at(q: GlintSurfaceQuery, u: vec2f) -> GlintLobesPatch {
     );
 }
 
-// Density and share of the boxes of a row, the first and last given, `edge` wide, that begin at `corner`.
-fn glint_surface_boxes(q: GlintSurfaceQuery, corner: vec2f, edge: f32, first: i32, last: i32) -> vec2f {
+// Density and share of boxes of `edge` texels under the footprint; as in a cell, the loops end where a box needs the mass inside
+// the disk.
+fn glint_surface_boxes(q: GlintSurfaceQuery, edge: f32) -> vec2f {
+    let frame = q.point.frame;
+    let reach = q.settings.lobes.reach;
+    // Boxes of a bilinear map begin at texel centres, where its patches do.
+    let origin = select(0.5, 0.0, q.map.nearest == 1u);
+    let top = glint_lobes_reach_y(frame, reach);
+    var j = i32(floor((frame.mean.y - top - origin) / edge));
+    let last = min(i32(floor((frame.mean.y + top - origin) / edge)), j + i32(GLINT_LOBES_MOST_STEPS));
+    var row = glint_lobes_row(frame, reach, origin, edge, origin + f32(j) * edge);
     var sum = vec2f(0.0);
-    var i = first;
-    while i <= last {
+    while j <= last {
         var seen = GlintSeenLobe();
-        while i <= last && !seen.cut {
-            let centre = corner + vec2f(f32(i) + 0.5, 0.5) * edge;
-            let lobe = glint_lobes_box_lobe(glint_surface_patch_at(q, centre), vec2f(edge));
-            seen = glint_lobes_seen(q.point, lobe, q.point.frame.mean - centre);
-            sum += vec2f(select(seen.density, 0.0, seen.cut), seen.share);
-            i += 1;
+        while j <= last && !seen.cut {
+            while row.x <= row.y && !seen.cut {
+                let centre = origin + (vec2f(f32(row.x), f32(j)) + 0.5) * edge;
+                let lobe = glint_lobes_box_lobe(glint_surface_box_patch(q, centre), vec2f(edge));
+                seen = glint_lobes_seen(q.point, lobe, frame.mean - centre);
+                sum += vec2f(select(seen.density, 0.0, seen.cut), seen.share);
+                row.x += 1;
+            }
+            if !seen.cut {
+                j += 1;
+                row = glint_lobes_row(frame, reach, origin, edge, origin + f32(j) * edge);
+            }
         }
         if seen.cut {
             sum.x += seen.density / glint_lobes_inside_disk(seen.mean, seen.covariance);
@@ -119,35 +135,23 @@ fn glint_surface_boxes(q: GlintSurfaceQuery, corner: vec2f, edge: f32, first: i3
 // Density and share of what the surface shows of a level under the footprint: 0 boxes, then the stored ones; the last, and
 // what would lie beyond it, is the whole surface.
 fn glint_surface_level_sum(q: GlintSurfaceQuery, level: u32, box_edge: f32) -> vec2f {
+    if level == 0u {
+        return glint_surface_boxes(q, box_edge);
+    }
     if level >= q.map.levels {
         return glint_lobes_cells(q.map, q.point, glint_lobes_level(q.map.levels - 1u), 0.0, true);
     }
     let frame = q.point.frame;
     let reach = q.settings.lobes.reach;
-    var edge = box_edge;
-    // Boxes of a bilinear map begin at texel centres, where its patches do.
-    var origin = select(0.5, 0.0, q.map.nearest == 1u);
-    if level > 0u {
-        edge = f32(glint_lobes_level(level - 1u).cell_texels);
-        origin = 0.0;
-    }
+    let edge = f32(glint_lobes_level(level - 1u).cell_texels);
     let top = glint_lobes_reach_y(frame, reach);
-    let first = i32(floor((frame.mean.y - top - origin) / edge));
-    let last = min(i32(floor((frame.mean.y + top - origin) / edge)), first + i32(GLINT_LOBES_MOST_STEPS));
+    let first = i32(floor((frame.mean.y - top) / edge));
+    let last = min(i32(floor((frame.mean.y + top) / edge)), first + i32(GLINT_LOBES_MOST_STEPS));
     var sum = vec2f(0.0);
     for (var j = first; j <= last; j++) {
-        let y = origin + f32(j) * edge;
-        let span = glint_lobes_span_x(frame, reach, y, y + edge);
-        if span.x <= span.y {
-            let begin = i32(floor((span.x - origin) / edge));
-            let end = min(i32(floor((span.y - origin) / edge)), begin + i32(GLINT_LOBES_MOST_STEPS));
-            if level == 0u {
-                sum += glint_surface_boxes(q, vec2f(origin, y), edge, begin, end);
-            } else {
-                for (var i = begin; i <= end; i++) {
-                    sum += glint_surface_block(q, level - 1u, vec2i(i, j) * i32(edge));
-                }
-            }
+        let row = glint_lobes_row(frame, reach, 0.0, edge, f32(j) * edge);
+        for (var i = row.x; i <= row.y; i++) {
+            sum += glint_surface_block(q, level - 1u, vec2i(i, j) * i32(edge));
         }
     }
     return sum;

@@ -56,13 +56,18 @@ fn glint_surface_cells_at_corners(q: GlintSurfaceQuery, at: vec2i, edge: i32, st
 }
 
 // Density and share of one lobe at the query's normal.
-fn glint_surface_lobe(q: GlintSurfaceQuery, lobe: GlintLobe, d: vec2f) -> vec2f {
-    let seen = glint_lobes_seen(q.point, lobe, d);
+fn glint_surface_lobe(query: GlintLobesQuery, lobe: GlintLobe, d: vec2f) -> vec2f {
+    let seen = glint_lobes_seen(query, lobe, d);
     var inside = 1.0;
     if seen.cut {
         inside = glint_lobes_inside_disk(seen.mean, seen.covariance);
     }
     return vec2f(seen.density / inside, seen.share);
+}
+
+// Normal, Jacobian and twist of a box around `u`.
+fn glint_surface_box_patch(q: GlintSurfaceQuery, u: vec2f) -> GlintLobesPatch {
+    return glint_surface_patch_at(q, u);
 }
 
 // Offset of a quarter of a lobe from its mean, by its signs along the columns of the spread. Four quarters have the lobe's
@@ -128,7 +133,7 @@ fn glint_surface_cell(
             }
             lobe = glint_lobes_part_of(lobe, count, signs);
         }
-        sum += glint_surface_lobe(q, lobe, q.point.frame.mean - corner - lobe.position);
+        sum += glint_surface_lobe(q.point, lobe, q.point.frame.mean - corner - lobe.position);
     }
     return sum;
 }
@@ -175,7 +180,7 @@ fn glint_surface_halved(q: GlintSurfaceQuery, centre: vec2f, size: vec2f) -> vec
             let here = place.normal + place.jacobian * d + place.twist * (d.x * d.y);
             let slopes = place.jacobian + mat2x2f(place.twist * d.y, place.twist * d.x);
             let lobe = glint_lobes_box_lobe(GlintLobesPatch(here, slopes, place.twist), part);
-            sum += glint_surface_lobe(q, lobe, q.point.frame.mean - centre - d);
+            sum += glint_surface_lobe(q.point, lobe, q.point.frame.mean - centre - d);
         }
     }
     return sum;

@@ -12,37 +12,39 @@ fn glint_synthesis_cut(synthesis: GlintSynthesis, patch_index: u32, which: u32, 
 // several the last in raster order.
 fn glint_synthesis_place(synthesis: GlintSynthesis, x: i32, y: i32) -> GlintSynthesisPlace {
     let edge = i32(synthesis.patch_texels);
-    let overlap = i32(synthesis.overlap);
+    let near = edge - i32(synthesis.overlap);
     let columns = i32(synthesis.columns);
     let rows = i32(synthesis.rows);
     let in_x = glint_floor_div(x, edge);
     let in_y = glint_floor_div(y, edge);
     let bx = glint_floor_div(in_x.x, columns).y;
     let by = glint_floor_div(in_y.x, rows).y;
-    let lx = in_x.y;
-    let ly = in_y.y;
-    let right = select(bx + 1, 0, bx + 1 == columns);
-    let below = select(by + 1, 0, by + 1 == rows);
-    let near_right = lx >= edge - overlap;
-    let near_below = ly >= edge - overlap;
-    if near_right && near_below {
-        let diagonal = u32(below * columns + right);
-        if lx - edge >= glint_synthesis_cut(synthesis, diagonal, 0u, ly - edge)
-            && ly - edge >= glint_synthesis_cut(synthesis, diagonal, 1u, lx - edge) {
-            return GlintSynthesisPlace(diagonal, lx - edge, ly - edge);
+    let near_right = in_x.y >= near;
+    var place = GlintSynthesisPlace(u32(by * columns + bx), in_x.y, in_y.y);
+    // Neighbours by bits, 1 right and 2 below, the last in raster order first. Most texels have none. That to the right and below
+    // has two cuts to pass, one a round.
+    var neighbour = select(0, 1, near_right) + select(0, 2, in_y.y >= near);
+    var upper = neighbour == 2;
+    while neighbour > 0 {
+        let right = (neighbour & 1) == 1;
+        let below = neighbour >= 2;
+        let column = select(bx, select(bx + 1, 0, bx + 1 == columns), right);
+        let row = select(by, select(by + 1, 0, by + 1 == rows), below);
+        let patch_index = u32(row * columns + column);
+        let lx = in_x.y - select(0, edge, right);
+        let ly = in_y.y - select(0, edge, below);
+        let cut = glint_synthesis_cut(synthesis, patch_index, select(0u, 1u, upper), select(ly, lx, upper));
+        let claims = select(lx, ly, upper) >= cut;
+        if claims && (upper || !below) {
+            place = GlintSynthesisPlace(patch_index, lx, ly);
+            break;
+        }
+        if claims {
+            upper = true;
+        } else {
+            neighbour = select(0, neighbour - 1, near_right);
+            upper = neighbour == 2;
         }
     }
-    if near_below {
-        let lower = u32(below * columns + bx);
-        if ly - edge >= glint_synthesis_cut(synthesis, lower, 1u, lx) {
-            return GlintSynthesisPlace(lower, lx, ly - edge);
-        }
-    }
-    if near_right {
-        let beside = u32(by * columns + right);
-        if lx - edge >= glint_synthesis_cut(synthesis, beside, 0u, ly) {
-            return GlintSynthesisPlace(beside, lx - edge, ly);
-        }
-    }
-    return GlintSynthesisPlace(u32(by * columns + bx), lx, ly);
+    return place;
 }
