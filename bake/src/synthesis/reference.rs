@@ -159,7 +159,6 @@ pub fn choose(
             .collect();
         let all_barred = barred.iter().all(|&b| b);
         let allowed: Vec<usize> = (0..offsets.len()).filter(|&c| all_barred || !barred[c]).collect();
-        // How many are better tells whether a candidate is on the short list.
         let rank = |c: usize| (errors[c], used[c], c);
         let better = |c: usize| allowed.iter().filter(|&&d| rank(d) < rank(c)).count();
         let listed: Vec<usize> = allowed.iter().copied().filter(|&c| better(c) < SHORTLIST).collect();
