@@ -78,6 +78,31 @@ pub fn one_minus_exp(math: &impl Elementary, x: f32) -> f32 {
     x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * series)))
 }
 
+/// −log₂(1 − p) for p ≤ ½, to a few units in the last place: how often one trial halves the chance of no hit.
+///
+/// Terms go by pairs, which is a short chain of operations, and the first ones last, so that small p keep their digits.
+pub fn halvings(p: f32) -> f32 {
+    let p2 = p * p;
+    let p4 = p2 * p2;
+    let high = (0.388_968_86 - p * 0.293_648_58) + p2 * (1.814_452 - p * 2.446_571) + p4 * 2.079_099_2;
+    p * ((1.442_695_1 + p * 0.721_337_2) + p2 * (0.481_428_2 + p * 0.350_293_87) + p4 * high)
+}
+
+/// Most halvings whose power is a normal number.
+pub const MOST_HALVINGS: f32 = 125.0;
+
+/// 2^−y and 1 − 2^−y for y from 0 to 126, both to a few units in the last place.
+pub fn halved(y: f32) -> [f32; 2] {
+    let whole = y.floor();
+    let f = y - whole;
+    let f2 = f * f;
+    let scale = f32::from_bits(((127 - whole as i32) as u32) << 23);
+    let high = (0.055_498_955 - f * 9.596_278e-3) + f2 * (1.290_781_1e-3 - f * 1.145_806_5e-4);
+    let series = (0.693_147_2 - f * 0.240_226_06) + f2 * high;
+    let lost = f * scale * series;
+    [scale - lost, (1.0 - scale) + lost]
+}
+
 /// 1 − (1 − p)^n, the chance of at least one hit, with a small *relative* error where it is small.
 ///
 /// Arguments as of [`pow1m()`].
