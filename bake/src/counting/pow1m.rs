@@ -4,6 +4,9 @@
 //! (1 − cp)^(N/c), which is off by 8e-5. Here it is exp(−N · L) with L = −log(1 − p) from p itself where p ≤ ½,
 //! L = 2 atanh(p / (2 − p)), and from q = 1 − p where p > ½. Both are given by the caller, so that neither end loses
 //! digits and p^N is `pow1m(q, p, n)`. A shader's log may be off by 2⁻²¹ between ½ and 2; it is never asked there.
+//!
+//! Draws themselves take them by powers of 2, where the exponent of an f32 does half of the work: [`halvings`] and [`halved`]
+//! are polynomials for p ≤ ½ alone, without a function that WGSL leaves to the device.
 
 /// The elementary functions that WGSL leaves to the device, so that tests can put its worst case in their place.
 pub trait Elementary {

@@ -8,7 +8,7 @@
 // are fewer, what is computed of the rest is dropped. Polynomials go by pairs of terms for the same reason.
 //
 // Pure functions, no accessors. Random words are uniform 32-bit numbers. N is any number from 0 to 1e16, p and q = 1 - p are from
-// 0 to 1. Compilers must not reassociate the differences of GlintCount.
+// 0 to 1. Compilers must not reassociate the differences of GlintCounts.
 
 // Largest expected count of the rarer outcome that is drawn exactly.
 const GLINT_FEW: f32 = 6.0;
