@@ -8,6 +8,8 @@
 //! Draws themselves take them by powers of 2, where the exponent of an f32 does half of the work: [`halvings`] and [`halved`]
 //! are polynomials for p ≤ ½ alone, without a function that WGSL leaves to the device.
 
+use std::f32::consts::LN_2;
+
 /// The elementary functions that WGSL leaves to the device, so that tests can put its worst case in their place.
 pub trait Elementary {
     /// Natural logarithm of x > 0.
@@ -101,7 +103,7 @@ pub fn halved(y: f32) -> [f32; 2] {
     let f2 = f * f;
     let scale = f32::from_bits(((127 - whole as i32) as u32) << 23);
     let high = (0.055_498_955 - f * 9.596_278e-3) + f2 * (1.290_781_1e-3 - f * 1.145_806_5e-4);
-    let series = (0.693_147_2 - f * 0.240_226_06) + f2 * high;
+    let series = (LN_2 - f * 0.240_226_06) + f2 * high;
     let lost = f * scale * series;
     [scale - lost, (1.0 - scale) + lost]
 }
