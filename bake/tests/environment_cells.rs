@@ -2,9 +2,10 @@
 
 use glam::Vec2;
 use glint_bake_core::environment::cells::{
-    exponential, footprint_area, footprint_facets, surface_cells, surface_lod, surface_word, surface_words,
+    footprint_area, footprint_facets, halvings_from_bits, surface_cells, surface_lod, surface_word, surface_words,
 };
 use glint_bake_core::rng::ItemRng;
+use std::f64::consts::LN_2;
 
 fn unit(word: u32) -> f64 {
     (f64::from(word) + 0.5) / 4_294_967_296.0
@@ -12,11 +13,11 @@ fn unit(word: u32) -> f64 {
 
 #[test]
 fn exponential_keeps_the_digits_of_small_numbers() {
-    for k in 1..10_000 {
-        for h in [k as f32 / 10_000.0, k as f32 * 1e-9] {
-            let exact = -libm::log1p(-f64::from(h));
-            assert!((f64::from(exponential(h)) / exact - 1.0).abs() < 2e-6, "{h}: {} {exact}", exponential(h));
-        }
+    let words = (0..10_000u32).flat_map(|k| [k, k * 429_496, u32::MAX - k]);
+    for bits in words.chain((0..32).map(|bit| 1 << bit)).chain((0..32).map(|bit| !(1 << bit))) {
+        let exact = -libm::log1p(-unit(bits));
+        let found = f64::from(halvings_from_bits(bits)) * LN_2;
+        assert!((found / exact - 1.0).abs() < 2e-6, "{bits:x}: {found} {exact}");
     }
 }
 

@@ -17,7 +17,7 @@
 
 use super::count::Count;
 use super::normal::{normal_upper_quantile, unit_from_bits};
-use super::pow1m::{one_minus_pow1m, pow1m};
+use super::pow1m::{MOST_HALVINGS, halved, halvings};
 
 /// Largest expected count of the rarer outcome that is drawn exactly.
 pub const FEW: f32 = 6.0;
@@ -38,14 +38,13 @@ pub fn whole_count(n: f32, bits: u32) -> f32 {
 /// Hits k with P(hits > k) ≤ u of n trials with p ≤ ½, q = 1 − p and np at most a few; exact up to [`WALK_STEPS`].
 pub fn few_hits(n: f32, p: f32, q: f32, u: f32) -> f32 {
     let odds = p / q;
-    let mut density = pow1m(p, q, n);
-    let mut more = one_minus_pow1m(p, q, n);
+    let [mut density, mut more] = halved((n * halvings(p)).min(MOST_HALVINGS));
     let mut k = 0.0;
     for _ in 0..WALK_STEPS {
         if u >= more {
             break;
         }
-        density *= (n - k) * odds / (k + 1.0);
+        density *= (n - k) * (odds / (k + 1.0));
         more -= density;
         k += 1.0;
     }

@@ -5,7 +5,7 @@
 //! a binomial number from gates and a clamped Gaussian ([`paper`], kept as a baseline). Here it is the inverse of the
 //! distribution function at one uniform number: exact where few facets are hit, a Cornish–Fisher expansion around the
 //! Gaussian ([`normal`]) where many are ([`binomial()`]). Both rest on powers (1 − p)^N that hold in f32
-//! ([`pow1m()`]). [`reference`](mod@reference) says the same from the definitions in f64, and [`quality`] measures one
+//! ([`pow1m`](mod@pow1m)). [`reference`](mod@reference) says the same from the definitions in f64, and [`quality`] measures one
 //! by the other.
 //!
 //! What deviates from the paper, and why, stands on top of each file and in `docs/METHODS.md`. The main points:

@@ -4,6 +4,11 @@
 //! (1 − cp)^(N/c), which is off by 8e-5. Here it is exp(−N · L) with L = −log(1 − p) from p itself where p ≤ ½,
 //! L = 2 atanh(p / (2 − p)), and from q = 1 − p where p > ½. Both are given by the caller, so that neither end loses
 //! digits and p^N is `pow1m(q, p, n)`. A shader's log may be off by 2⁻²¹ between ½ and 2; it is never asked there.
+//!
+//! Draws themselves take them by powers of 2, where the exponent of an f32 does half of the work: [`halvings`] and [`halved`]
+//! are polynomials for p ≤ ½ alone, without a function that WGSL leaves to the device.
+
+use std::f32::consts::LN_2;
 
 /// The elementary functions that WGSL leaves to the device, so that tests can put its worst case in their place.
 pub trait Elementary {
@@ -76,6 +81,31 @@ pub fn one_minus_exp(math: &impl Elementary, x: f32) -> f32 {
     // 1 − exp(−x) by its series, which keeps the digits of small x.
     let series = 1.0 / 24.0 - x * (1.0 / 120.0 - x * (1.0 / 720.0 - x * (1.0 / 5040.0)));
     x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * series)))
+}
+
+/// −log₂(1 − p) for p ≤ ½, to a few units in the last place: how often one trial halves the chance of no hit.
+///
+/// Terms go by pairs, which is a short chain of operations, and the first ones last, so that small p keep their digits.
+pub fn halvings(p: f32) -> f32 {
+    let p2 = p * p;
+    let p4 = p2 * p2;
+    let high = (0.388_968_86 - p * 0.293_648_58) + p2 * (1.814_452 - p * 2.446_571) + p4 * 2.079_099_2;
+    p * ((1.442_695_1 + p * 0.721_337_2) + p2 * (0.481_428_2 + p * 0.350_293_87) + p4 * high)
+}
+
+/// Most halvings whose power is a normal number.
+pub const MOST_HALVINGS: f32 = 125.0;
+
+/// 2^−y and 1 − 2^−y for y from 0 to 126, both to a few units in the last place.
+pub fn halved(y: f32) -> [f32; 2] {
+    let whole = y.floor();
+    let f = y - whole;
+    let f2 = f * f;
+    let scale = f32::from_bits(((127 - whole as i32) as u32) << 23);
+    let high = (0.055_498_955 - f * 9.596_278e-3) + f2 * (1.290_781_1e-3 - f * 1.145_806_5e-4);
+    let series = (LN_2 - f * 0.240_226_06) + f2 * high;
+    let lost = f * scale * series;
+    [scale - lost, (1.0 - scale) + lost]
 }
 
 /// 1 − (1 − p)^n, the chance of at least one hit, with a small *relative* error where it is small.

@@ -4,23 +4,23 @@
 //! Paper: Kneiphof and Klein 2025, section 3.3, which takes the grids of Deliot and Belcour 2023: facets are shared among
 //! the corners of a grid over places and footprints, each corner draws, and the counts are interpolated. Deviations:
 //! - One draw a pixel instead of one a corner. What is interpolated is its random word: each corner has an exponential
-//!   number E of rate 1, and the least E / w under weights w that add up to 1 is an exponential number of rate 1
+//!   number E, and the least E / w under weights w that add up to 1 is an exponential number of the same mean
 //!   again. So the word of any place is uniform and counts have the distribution of the pixel's facets at every place: neither
 //!   mean nor contrast shows the grid. Interpolated counts vary less between corners than at them.
 //! - The word is a continuous function of place and footprint; that a rare facet is lit depends on a single
 //!   corner, around which its glint is a spot of about a pixel. The spot's rim is sharp.
-//! - Corners are those of a triangle grid (simplices, as in the paper) at two levels around the pixel's size. Orientation and
+//! - Corners are those of a triangle grid at the two levels around the pixel's size, of which a place between the levels takes
+//!   the four of a tetrahedron (simplices, as in the paper). Orientation and
 //!   ratio of the footprint have no grid: where a pixel is long on the surface, its words are those of a square pixel of the
 //!   same area.
 
-use crate::counting::normal::unit_from_bits;
-use crate::counting::pow1m::{Native, one_minus_exp};
-use crate::dictionary::hash::{CellState, cell_state, draw_bits, mix_bits};
+use crate::counting::pow1m::{halved, halvings};
+use crate::dictionary::hash::{CellState, draw_bits, mix_bits};
 use glam::Vec2;
 use glint_formats::environment::MAX_LEVELS;
 
-/// Corners that a place lies between: three at either level.
-pub const CORNERS: usize = 6;
+/// Corners that a place lies between, on two levels.
+pub const CORNERS: usize = 4;
 /// Largest |level|; the edge of a cell is 2^level surface units.
 pub const MAX_LEVEL: f32 = 24.0;
 /// Most facets of a draw.
@@ -32,7 +32,7 @@ const LEAST_WEIGHT: f32 = 1e-12;
 /// Longest derivative that counts, so that areas are finite.
 const LONGEST: f32 = 1e15;
 /// Cells beyond this are clamped.
-const FARTHEST: f32 = 1e9;
+const FARTHEST: f32 = 5e8;
 
 /// The corners around a place, as their random states, and one over the weight of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,54 +60,115 @@ pub fn footprint_facets(area: f32, density: f32) -> f32 {
     (area * density).clamp(0.0, MAX_FACETS)
 }
 
-/// Sets the three corners of one level from `first` on; `share` is the level's weight.
-fn set_level(cells: &mut SurfaceCells, first: usize, position: Vec2, level: i32, share: f32, seed: u32) {
-    // 2^-level, exactly.
-    let scale = f32::from_bits(((127 - level) as u32) << 23);
-    let p = (position * scale).clamp(Vec2::splat(-FARTHEST), Vec2::splat(FARTHEST));
-    let q = p + Vec2::splat((p.x + p.y) * SKEW);
-    let base = q.floor();
-    let f = q - base;
-    let (x, y) = (base.x as i32 as u32, base.y as i32 as u32);
-    let below = f.x > f.y;
-    let (high, low) = if below { (f.x, f.y) } else { (f.y, f.x) };
-    let (dx, dy) = if below { (1, 0) } else { (0, 1) };
-    let seed = seed ^ mix_bits(level as u32);
-    let corners = [(0, 0, 1.0 - high), (dx, dy, high - low), (1, 1, low)];
-    for (i, (dx, dy, weight)) in corners.into_iter().enumerate() {
-        cells.states[first + i] = cell_state(x.wrapping_add(dx), y.wrapping_add(dy), seed);
-        cells.inverse_weights[first + i] = 1.0 / (weight * share).max(LEAST_WEIGHT);
-    }
+/// Seed of a level's grid.
+fn level_seed(level: i32, seed: u32) -> u32 {
+    mix_bits(seed.wrapping_add((level as u32).wrapping_mul(0x9e37_79b9)))
+}
+
+/// Random state of the corner `offset` from `base` on the fine or the coarse grid: two Feistel rounds, a bijection of the
+/// place. That of neighbours differs, and each draw mixes once more.
+fn corner_state(base: [i32; 2], offset: [i32; 2], coarse: bool, [fine, wide]: [u32; 2]) -> CellState {
+    let scale = if coarse { 1 } else { 2 };
+    let [x, y] = [0, 1].map(|i| base[i].wrapping_mul(scale).wrapping_add(offset[i]) as u32);
+    let seed = if coarse { wide } else { fine };
+    let a = x.wrapping_add(mix_bits(y.wrapping_add(seed)));
+    CellState { a, b: y.wrapping_add(mix_bits(a ^ seed)) }
 }
 
 /// The corners around `position` (surface units) for a pixel of level `lod` ([`surface_lod`]).
+///
+/// A triangle ABC of the coarse grid is four of the fine one, cut at the middles D of AB, E of BC and F of CA. Between the
+/// levels, with coarse corners A′, B′ and C′ above A, B and C, lie the tetrahedra ADFA′, BDEB′ and CEFC′, and an octahedron
+/// that is cut into four around its diagonal DC′. Weights are linear in each, so they are continuous.
 pub fn surface_cells(position: Vec2, lod: f32, seed: u32) -> SurfaceCells {
     let fine = lod.floor();
-    let blend = lod - fine;
-    let mut cells = SurfaceCells { states: [CellState { a: 0, b: 0 }; CORNERS], inverse_weights: [1.0; CORNERS] };
-    set_level(&mut cells, 0, position, fine as i32, 1.0 - blend, seed);
-    set_level(&mut cells, 3, position, fine as i32 + 1, blend, seed);
-    cells
+    let t = lod - fine;
+    let level = fine as i32;
+    // 2^-(level + 1), exactly.
+    let scale = f32::from_bits(((126 - level) as u32) << 23);
+    let p = (position * scale).clamp(Vec2::splat(-FARTHEST), Vec2::splat(FARTHEST));
+    let q = p + Vec2::splat((p.x + p.y) * SKEW);
+    let whole = q.floor();
+    let f = q - whole;
+    let base = [whole.x as i32, whole.y as i32];
+    let along = if f.x > f.y { [1, 0] } else { [0, 1] };
+    // Twice the barycentric coordinates in the coarse triangle, whose corner B is the nearer one of the square's other two.
+    let c2 = 2.0 * f.x.min(f.y);
+    let a2 = 2.0 - 2.0 * f.x.max(f.y);
+    let b2 = 2.0 - a2 - c2;
+    let rest = 1.0 - t;
+    let (alpha, beta, gamma) = (a2 - rest, b2 - rest, c2 - rest);
+    let (near_a, near_b, near_c) = (alpha >= 2.0 * t, beta >= 2.0 * t, gamma >= 2.0 * t);
+    let (coarse_a, coarse_b) = (alpha >= 0.0, beta >= 0.0);
+    // Weights of A′, B′, E and F in the octahedron.
+    let (a, b) = ((0.5 * alpha).clamp(0.0, t), (0.5 * beta).clamp(0.0, t));
+    let (e, f) = ((-alpha).max(0.0), (-beta).max(0.0));
+    let (beyond, twice) = ([1 + along[0], 1 + along[1]], [2 * along[0], 2 * along[1]]);
+    let seeds = [level_seed(level, seed), level_seed(level + 1, seed)];
+    // Offset, whether it is a coarse corner, weight: E or A′, F or B′, C′ or A or B, D or C.
+    let corners = [
+        if coarse_a {
+            ([0, 0], true, a)
+        } else if near_b {
+            (beyond, false, c2)
+        } else if near_c {
+            (beyond, false, b2)
+        } else {
+            (beyond, false, e)
+        },
+        if coarse_b {
+            (along, true, b)
+        } else if near_a {
+            ([1, 1], false, c2)
+        } else if near_c {
+            ([1, 1], false, a2)
+        } else {
+            ([1, 1], false, f)
+        },
+        if near_b {
+            (twice, false, beta - 2.0 * t)
+        } else if near_a {
+            ([0, 0], false, alpha - 2.0 * t)
+        } else {
+            ([1, 1], true, t - a - b)
+        },
+        if near_b {
+            (along, false, a2)
+        } else if near_a {
+            (along, false, b2)
+        } else if near_c {
+            ([2, 2], false, gamma - 2.0 * t)
+        } else {
+            (along, false, rest - e - f)
+        },
+    ];
+    SurfaceCells {
+        states: corners.map(|(offset, coarse, _)| corner_state(base, offset, coarse, seeds)),
+        inverse_weights: corners.map(|(_, _, weight)| 1.0 / weight.max(LEAST_WEIGHT)),
+    }
 }
 
-/// −ln(1 − h) for h in (0, 1), off by 1e-6 of itself: small h keep their digits, which a shader's log would not.
-pub fn exponential(h: f32) -> f32 {
-    if h > 0.5 {
-        return -(1.0 - h).ln();
-    }
-    let high = 0.187_202_24 + h * (0.524_013_5 + h * (-0.640_168_6 + h * 0.992_075_7));
-    h * (1.000_001 + h * (0.499_815_08 + h * (0.338_949_9 + h * high)))
+/// −log₂(1 − h) for h = (`bits` + ½) / 2³², off by 1e-6 of itself: an exponential number of mean 1 / ln 2 from a random word.
+/// Small h keep their digits, which a shader's log would not.
+pub fn halvings_from_bits(bits: u32) -> f32 {
+    // All ones where h is above ½.
+    let upper = (bits as i32) >> 31;
+    // Distance of h to the nearer of 0 and 1, and its mantissa in [½, 1).
+    let x = ((bits as i32 ^ upper) as f32 + 0.5) * (1.0 / 4_294_967_296.0);
+    let number = x.to_bits() as i32;
+    let mantissa = f32::from_bits((number as u32 & 0x007f_ffff) | 0x3f00_0000);
+    let whole = ((126 - (number >> 23)) & upper) as f32;
+    whole + halvings(if upper != 0 { 1.0 - mantissa } else { x })
 }
 
 /// Word `index` of a place: uniform, and small where a corner has a rare number.
 pub fn surface_word(cells: &SurfaceCells, index: u32) -> u32 {
-    let mut least = f32::MAX;
+    // After 24 halvings no f32 is nearer to 1.
+    let mut least = 24.0f32;
     for (state, inverse) in cells.states.iter().zip(cells.inverse_weights) {
-        least = least.min(exponential(unit_from_bits(draw_bits(*state, index))) * inverse);
+        least = least.min(halvings_from_bits(draw_bits(*state, index)) * inverse);
     }
-    let u = one_minus_exp(&Native, least);
-    // The largest f32 below 2³², so that the conversion cannot overflow.
-    (u * 4_294_967_296.0).min(4_294_967_040.0) as u32
+    (halved(least)[1] * 4_294_967_296.0) as u32
 }
 
 /// The words that [`multinomial`](crate::counting::multinomial()) reads for `leaves` leaves of its tree.

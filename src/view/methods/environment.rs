@@ -121,7 +121,7 @@ pub fn upload_as(gpu: &Gpu, environment: &Environment, look_up: LookUp, features
     for note in [&radiance.note, &indicators.note].into_iter().flatten() {
         set.note(note.clone());
     }
-    set.storage(gpu, bytemuck::bytes_of(&uniform));
+    set.uniform(gpu, bytemuck::bytes_of(&uniform));
     let shape = |format, layers: u32, dimension| GpuTexture {
         format,
         size: [params.face_size; 2],

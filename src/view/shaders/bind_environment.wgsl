@@ -1,6 +1,6 @@
 // Bindings of an environment for glint_environment.wgsl: group 2, read by a sampler.
 
-@group(2) @binding(0) var<storage, read> environment: GlintEnvironment;
+@group(2) @binding(0) var<uniform> environment: GlintEnvironment;
 // Section ENRA: RGBA16Float or RGBA32Float, all mips.
 @group(2) @binding(1) var environment_radiance: texture_cube<f32>;
 // Section ENIN: RGBA16Float, RGBA32Float or RGBA16Unorm, four levels a layer; one black texel if there is one level.

@@ -4,8 +4,11 @@
 // one uniform number a binomial draw through the inverse of its distribution function, exact where few facets are hit and a
 // Cornish-Fisher expansion where many are.
 //
+// Nodes are drawn four at a time: their chains of dependent operations overlap, and they share the turns of a loop. Where there
+// are fewer, what is computed of the rest is dropped. Polynomials go by pairs of terms for the same reason.
+//
 // Pure functions, no accessors. Random words are uniform 32-bit numbers. N is any number from 0 to 1e16, p and q = 1 - p are from
-// 0 to 1. Compilers must not reassociate the differences of GlintCount.
+// 0 to 1. Compilers must not reassociate the differences of GlintCounts.
 
 // Largest expected count of the rarer outcome that is drawn exactly.
 const GLINT_FEW: f32 = 6.0;
@@ -13,8 +16,13 @@ const GLINT_FEW: f32 = 6.0;
 const GLINT_WHOLE: f32 = 8388608.0;
 // Whole numbers up to here are exact in one f32.
 const GLINT_EXACT_COUNT: f32 = 16777216.0;
-const GLINT_WALK_STEPS: u32 = 20u;
-const GLINT_LARGEST_EXPONENT: f32 = 87.0;
+const GLINT_WALK_STEPS: f32 = 20.0;
+// 2^-y is a normal number up to here.
+const GLINT_MOST_HALVINGS: f32 = 125.0;
+
+// Whether counts above 2^24 carry what rounding to f32 takes from them. A program whose counts end up in a sum in f32, as a
+// radiance is, does not show it and may set this to false before it draws.
+var<private> glint_large_counts: bool = true;
 
 // A whole number to 1e16: `high`, rounded where it is above 2^24, and what is missing.
 struct GlintCount {
@@ -22,10 +30,22 @@ struct GlintCount {
     low: f32,
 }
 
+// Four of them.
+struct GlintCounts {
+    high: vec4f,
+    low: vec4f,
+}
+
 // Hits and misses.
 struct GlintSplit {
     hits: GlintCount,
     misses: GlintCount,
+}
+
+// Those of four draws.
+struct GlintSplits {
+    hits: GlintCounts,
+    misses: GlintCounts,
 }
 
 // Numbers of up to sixteen levels, the darkest first.
@@ -44,81 +64,78 @@ struct GlintWords {
     d: vec4u,
 }
 
-// Uniform number in (0, 1) of 32 random bits; small ones keep a resolution of 2^-32.
+// Uniform numbers in (0, 1) of 32 random bits; small ones keep a resolution of 2^-32.
+fn glint_units_from_bits(bits: vec4u) -> vec4f {
+    return min((vec4f(bits) + 0.5) * (1.0 / 4294967296.0), vec4f(0.99999994));
+}
+
 fn glint_unit_from_bits(bits: u32) -> f32 {
-    return min((f32(bits) + 0.5) * (1.0 / 4294967296.0), 0.99999994);
+    return glint_units_from_bits(vec4u(bits, 0u, 0u, 0u)).x;
 }
 
 // z with P(Z > z) = u for a standard normal Z, to 3e-5.
-fn glint_normal_upper_quantile(u: f32) -> f32 {
+fn glint_normal_upper_quantile(u: vec4f) -> vec4f {
     let x = 1.0 - 2.0 * u;
     let w = -log(4.0 * u * (1.0 - u));
-    if w < 5.0 {
-        let d = w - 2.5;
-        let high = 3.071955e-4 + d * (-6.411285e-6 + d * (-4.487788e-6 + d * 5.037158e-7));
-        return x * (2.123313 + d * (0.34880218 + d * (-5.9057454e-3 + d * (-1.772403e-3 + d * high))));
-    }
-    let d = sqrt(w) - 3.4632419;
-    let high = 1.6521519e-3 + d * (-1.9210854e-3 + d * 8.503982e-4);
-    return x * (4.6647286 + d * (1.424175 + d * (4.9826747e-3 + d * (-2.5789616e-3 + d * high))));
+    let c = w - 2.5;
+    let c2 = c * c;
+    let centre = (2.123313 + c * 0.34880218) + c2 * ((-5.9057454e-3 - c * 1.772403e-3)
+        + c2 * ((3.071955e-4 - c * 6.411285e-6) + c2 * (-4.487788e-6 + c * 5.037158e-7)));
+    let t = sqrt(w) - 3.4632419;
+    let t2 = t * t;
+    let tail = (4.6647286 + t * 1.424175) + t2 * ((4.9826747e-3 - t * 2.5789616e-3)
+        + t2 * ((1.6521519e-3 - t * 1.9210854e-3) + t2 * 8.503982e-4));
+    return x * select(tail, centre, w < vec4f(5.0));
 }
 
-// -log(1 - p) of p <= 1/2.
-fn glint_rare_negative_log1m(p: f32, q: f32) -> f32 {
-    let s = p / (1.0 + q);
-    let t = s * s;
-    let series = 1.0 / 9.0 + t * (1.0 / 11.0 + t * (1.0 / 13.0 + t * (1.0 / 15.0)));
-    return 2.0 * s * (1.0 + t * (1.0 / 3.0 + t * (1.0 / 5.0 + t * (1.0 / 7.0 + t * series))));
+// -log2(1 - p) of p <= 1/2, to a few units in the last place.
+fn glint_halvings(p: vec4f) -> vec4f {
+    let p2 = p * p;
+    let p4 = p2 * p2;
+    let high = (0.38896886 - p * 0.29364858) + p2 * (1.814452 - p * 2.446571) + p4 * 2.0790992;
+    // The first terms last, so that small p keep their digits.
+    return p * ((1.4426951 + p * 0.7213372) + p2 * (0.4814282 + p * 0.35029387) + p4 * high);
 }
 
-// -log(1 - p) to a few units in the last place; at most 88. A logarithm between 1/2 and 2 is never asked for.
-fn glint_negative_log1m(p: f32, q: f32) -> f32 {
-    if p > 0.5 {
-        return -log(max(q, 1.1754944e-38));
-    }
-    return glint_rare_negative_log1m(p, q);
+struct GlintHalved {
+    left: vec4f,
+    lost: vec4f,
 }
 
-// (1 - p)^n. p^n is glint_pow1m(q, p, n).
-fn glint_pow1m(p: f32, q: f32, n: f32) -> f32 {
-    return exp(-min(n * glint_negative_log1m(p, q), GLINT_LARGEST_EXPONENT));
+// 2^-y and 1 - 2^-y for y from 0 to 126, to a few units in the last place.
+fn glint_halved(y: vec4f) -> GlintHalved {
+    let whole = floor(y);
+    let f = y - whole;
+    let f2 = f * f;
+    let scale = bitcast<vec4f>((vec4i(127) - vec4i(whole)) << vec4u(23u));
+    let high = (0.055498955 - f * 9.596278e-3) + f2 * (1.2907811e-3 - f * 1.1458065e-4);
+    let series = (0.6931472 - f * 0.24022606) + f2 * high;
+    let lost = f * scale * series;
+    return GlintHalved(scale - lost, (1.0 - scale) + lost);
 }
 
-// 1 - exp(-x) for x from 0 to 1/2.
-fn glint_small_one_minus_exp(x: f32) -> f32 {
-    let series = 1.0 / 24.0 - x * (1.0 / 120.0 - x * (1.0 / 720.0 - x * (1.0 / 5040.0)));
-    return x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * series)));
-}
-
-// 1 - exp(-x) for x >= 0, with a small relative error where it is small.
-fn glint_one_minus_exp(x: f32) -> f32 {
-    let bounded = min(x, GLINT_LARGEST_EXPONENT);
-    return select(glint_small_one_minus_exp(bounded), 1.0 - exp(-bounded), bounded >= 0.5);
-}
-
-// 1 - (1 - p)^n, the chance of at least one hit.
-fn glint_one_minus_pow1m(p: f32, q: f32, n: f32) -> f32 {
-    return glint_one_minus_exp(min(n * glint_negative_log1m(p, q), GLINT_LARGEST_EXPONENT));
-}
-
-// `high` + `low`, both whole, as a count.
-fn glint_count(high: f32, low: f32) -> GlintCount {
+// `high` + `low`, both whole, as counts.
+fn glint_counts(high: vec4f, low: vec4f) -> GlintCounts {
     let sum = high + low;
-    if sum <= GLINT_EXACT_COUNT {
-        return GlintCount(sum, 0.0);
+    if !glint_large_counts {
+        return GlintCounts(sum, vec4f(0.0));
     }
-    return GlintCount(high, low);
+    let exact = sum <= vec4f(GLINT_EXACT_COUNT);
+    return GlintCounts(select(high, sum, exact), select(low, vec4f(0.0), exact));
 }
 
-fn glint_count_value(count: GlintCount) -> f32 {
-    return count.high + count.low;
+fn glint_counts_value(counts: GlintCounts) -> vec4f {
+    return counts.high + counts.low;
 }
 
-// A count less a smaller one.
-fn glint_count_subtract(a: GlintCount, b: GlintCount) -> GlintCount {
+// Counts less smaller ones.
+fn glint_counts_subtract(a: GlintCounts, b: GlintCounts) -> GlintCounts {
     let high = a.high - b.high;
+    if !glint_large_counts {
+        return GlintCounts(high, vec4f(0.0));
+    }
     let rest = (a.high - high) - b.high;
-    return glint_count(high, rest + (a.low - b.low));
+    return glint_counts(high, rest + (a.low - b.low));
 }
 
 // A whole number with mean `n`.
@@ -129,80 +146,89 @@ fn glint_whole_count(n: f32, bits: u32) -> f32 {
 }
 
 // Hits k with P(hits > k) <= u of n trials with p <= 1/2, q = 1 - p and np at most a few.
-fn glint_few_hits(n: f32, p: f32, q: f32, u: f32) -> f32 {
+fn glint_few_hits(n: vec4f, p: vec4f, q: vec4f, u: vec4f) -> vec4f {
     let odds = p / q;
-    // (1 - p)^n and 1 - (1 - p)^n, as glint_pow1m and glint_one_minus_pow1m have them for p <= 1/2.
-    let x = min(n * glint_rare_negative_log1m(p, q), GLINT_LARGEST_EXPONENT);
-    var density = exp(-x);
-    var more = select(glint_small_one_minus_exp(x), 1.0 - density, x >= 0.5);
-    var k = 0.0;
-    for (var step = 0u; step < GLINT_WALK_STEPS; step++) {
-        if u >= more {
+    let none = glint_halved(min(n * glint_halvings(p), vec4f(GLINT_MOST_HALVINGS)));
+    var density = none.left;
+    var more = none.lost;
+    var hits = vec4f(0.0);
+    // Every node takes as many steps as the last of the four.
+    for (var k = 0.0; k < GLINT_WALK_STEPS; k += 1.0) {
+        let further = u < more;
+        if !any(further) {
             break;
         }
-        density *= (n - k) * odds / (k + 1.0);
+        hits += select(vec4f(0.0), vec4f(1.0), further);
+        density *= (n - k) * (odds / (k + 1.0));
         more -= density;
-        k += 1.0;
     }
-    return min(k, n);
+    return min(hits, n);
 }
 
 // What rounding took from a * b = `product`, by halves whose products are exact.
-fn glint_product_rest(a: f32, b: f32, product: f32) -> f32 {
-    let a_high = bitcast<f32>(bitcast<u32>(a) & 0xfffff000u);
-    let b_high = bitcast<f32>(bitcast<u32>(b) & 0xfffff000u);
+fn glint_product_rest(a: vec4f, b: vec4f, product: vec4f) -> vec4f {
+    let a_high = bitcast<vec4f>(bitcast<vec4u>(a) & vec4u(0xfffff000u));
+    let b_high = bitcast<vec4f>(bitcast<vec4u>(b) & vec4u(0xfffff000u));
     let a_low = a - a_high;
     let b_low = b - b_high;
     return ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
 }
 
 // Hits k with P(hits > k) ~ u of n trials with p <= 1/2, q = 1 - p and np more than GLINT_FEW.
-fn glint_many_hits(n: GlintCount, p: f32, q: f32, u: f32) -> GlintCount {
+fn glint_many_hits(n: GlintCounts, p: vec4f, q: vec4f, u: vec4f) -> GlintCounts {
     let mean = n.high * p;
-    let rest = glint_product_rest(n.high, p, mean) + n.low * p;
+    var rest = vec4f(0.0);
+    if glint_large_counts {
+        rest = glint_product_rest(n.high, p, mean) + n.low * p;
+    }
     let sigma = sqrt((mean + rest) * q);
     let z = glint_normal_upper_quantile(u);
     let skew = q - p;
     let z2 = z * z;
     let third = (1.0 - 6.0 * p * q) * (z2 - 3.0) * (1.0 / 24.0) - skew * skew * (2.0 * z2 - 5.0) * (1.0 / 36.0);
     let spread = sigma * z + skew * (z2 - 1.0) * (1.0 / 6.0) + z * (third - 1.0 / 24.0) / sigma;
-    if mean < GLINT_WHOLE {
-        return GlintCount(clamp(round(mean + (rest + spread)), 0.0, glint_count_value(n)), 0.0);
-    }
-    return glint_count(mean, round(rest + spread));
+    let small = clamp(round(mean + (rest + spread)), vec4f(0.0), glint_counts_value(n));
+    let large = glint_counts(mean, round(rest + spread));
+    let is_small = mean < vec4f(GLINT_WHOLE);
+    return GlintCounts(select(large.high, small, is_small), select(large.low, vec4f(0.0), is_small));
 }
 
-// Hits and misses of `n` trials with hit chance `p`; they add up to `n`.
-fn glint_whole_binomial(n: GlintCount, p: f32, q: f32, bits: u32) -> GlintSplit {
+// Hits and misses of four lots of `n` trials with hit chance `p`; they add up to `n`.
+fn glint_whole_binomials(n: GlintCounts, p: vec4f, q: vec4f, bits: vec4u) -> GlintSplits {
     let swapped = p > q;
-    let rare = select(p, q, swapped);
-    let frequent = select(q, p, swapped);
-    let u = glint_unit_from_bits(select(bits, ~bits, swapped));
-    var hits: GlintCount;
-    if glint_count_value(n) * rare <= GLINT_FEW {
-        hits = GlintCount(glint_few_hits(glint_count_value(n), rare, frequent, u), 0.0);
-    } else {
-        hits = glint_many_hits(n, rare, frequent, u);
-    }
-    let misses = glint_count_subtract(n, hits);
-    if swapped {
-        return GlintSplit(misses, hits);
-    }
-    return GlintSplit(hits, misses);
+    let rare = min(p, q);
+    let frequent = max(p, q);
+    let u = glint_units_from_bits(select(bits, ~bits, swapped));
+    let few = glint_counts_value(n) * rare <= vec4f(GLINT_FEW);
+    let walked = glint_few_hits(glint_counts_value(n), rare, frequent, select(vec4f(1.0), u, few));
+    let many = glint_many_hits(n, rare, frequent, u);
+    let hits = GlintCounts(select(many.high, walked, few), select(many.low, vec4f(0.0), few));
+    let misses = glint_counts_subtract(n, hits);
+    return GlintSplits(
+        GlintCounts(select(hits.high, misses.high, swapped), select(hits.low, misses.low, swapped)),
+        GlintCounts(select(misses.high, hits.high, swapped), select(misses.low, hits.low, swapped)),
+    );
 }
 
 // Hits and misses of any number `n` >= 0 of trials: the first word makes it whole, the second draws.
 fn glint_binomial(n: f32, p: f32, q: f32, bits: vec2u) -> GlintSplit {
-    return glint_whole_binomial(GlintCount(glint_whole_count(n, bits.x), 0.0), p, q, bits.y);
+    let none = vec4f(0.0);
+    let whole = GlintCounts(vec4f(glint_whole_count(n, bits.x), 0.0, 0.0, 0.0), none);
+    let splits = glint_whole_binomials(whole, vec4f(p, none.xyz), vec4f(q, vec3f(1.0)), vec4u(bits.y, 0u, 0u, 0u));
+    return GlintSplit(
+        GlintCount(splits.hits.high.x, splits.hits.low.x), GlintCount(splits.misses.high.x, splits.misses.low.x),
+    );
 }
 
-// One node of the tree: how many of `n` go left and right, with chances in proportion to the weights.
-fn glint_split(n: GlintCount, left: f32, right: f32, bits: u32) -> GlintSplit {
-    if right > 0.0 && n.high > 0.0 {
-        let whole = left + right;
-        return glint_whole_binomial(n, left / whole, right / whole, bits);
-    }
-    return GlintSplit(n, GlintCount(0.0, 0.0));
+// Four nodes of the tree: how many of `n` go left and right, with chances in proportion to the weights.
+fn glint_splits(n: GlintCounts, left: vec4f, right: vec4f, bits: vec4u) -> GlintSplits {
+    let whole = left + right;
+    let drawn = (right > vec4f(0.0)) & (n.high > vec4f(0.0));
+    // A node without a draw is one that all go left of.
+    let divisor = select(vec4f(1.0), whole, drawn);
+    let p = select(vec4f(1.0), left / divisor, drawn);
+    let q = select(vec4f(0.0), right / divisor, drawn);
+    return glint_whole_binomials(n, p, q, bits);
 }
 
 // Weight of four leaves.
@@ -210,54 +236,62 @@ fn glint_quad_weight(weights: vec4f) -> f32 {
     return (weights.x + weights.y) + (weights.z + weights.w);
 }
 
-// A subtree of four leaves; words of its top node and of its two children.
-fn glint_multinomial_quad(n: GlintCount, weights: vec4f, top: u32, left: u32, right: u32) -> vec4f {
-    let halves = glint_split(n, weights.x + weights.y, weights.z + weights.w, top);
-    let first = glint_split(halves.hits, weights.x, weights.y, left);
-    let second = glint_split(halves.misses, weights.z, weights.w, right);
-    return vec4f(
-        glint_count_value(first.hits), glint_count_value(first.misses),
-        glint_count_value(second.hits), glint_count_value(second.misses),
+// One node's share of four as the first of the next four.
+fn glint_first_count(high: f32, low: f32) -> GlintCounts {
+    return GlintCounts(vec4f(high, 0.0, 0.0, 0.0), vec4f(low, 0.0, 0.0, 0.0));
+}
+
+// Counts of the children of two nodes, a node after the other.
+fn glint_pair_counts(x: GlintSplits) -> GlintCounts {
+    return GlintCounts(
+        vec4f(x.hits.high.x, x.misses.high.x, x.hits.high.y, x.misses.high.y),
+        vec4f(x.hits.low.x, x.misses.low.x, x.hits.low.y, x.misses.low.y),
     );
+}
+
+// Two subtrees of four leaves, of the first two of `tops`: words of their top nodes and of the four children.
+fn glint_multinomial_eight(tops: GlintCounts, a: vec4f, b: vec4f, top: vec2u, children: vec4u) -> array<vec4f, 2> {
+    let none = vec2f(0.0);
+    let halves = glint_splits(
+        tops, vec4f(a.x + a.y, b.x + b.y, none), vec4f(a.z + a.w, b.z + b.w, none), vec4u(top, 0u, 0u),
+    );
+    let leaves = glint_splits(
+        glint_pair_counts(halves), vec4f(a.x, a.z, b.x, b.z), vec4f(a.y, a.w, b.y, b.w), children,
+    );
+    let left = glint_counts_value(leaves.hits);
+    let right = glint_counts_value(leaves.misses);
+    return array<vec4f, 2>(vec4f(left.x, right.x, left.y, right.y), vec4f(left.z, right.z, left.w, right.w));
 }
 
 // How many of `n` >= 0 facets fall to each of the first `levels` (1 to 16) levels, with chances in proportion to weights that
 // are 0 beyond them. Whole numbers that add up to a whole number with mean `n`.
 //
-// Node i has the children 2i and 2i + 1, and its draw reads word i. Leaves are taken four at a time; with up to eight there is
-// no dynamic index.
+// Node i has the children 2i and 2i + 1, and its draw reads word i.
 fn glint_multinomial(n: f32, weights: GlintLevels, levels: u32, words: GlintWords) -> GlintLevels {
-    let root = GlintCount(glint_whole_count(n, words.a.x), 0.0);
+    let root = glint_first_count(glint_whole_count(n, words.a.x), 0.0);
     let none = vec4f(0.0);
     if levels <= 4u {
         // With two levels the tree's only node is its root.
         let left = select(words.a.z, words.a.y, levels <= 2u);
-        return GlintLevels(glint_multinomial_quad(root, weights.a, words.a.y, left, words.a.w), none, none, none);
+        let counts = glint_multinomial_eight(root, weights.a, none, vec2u(words.a.y, 0u), vec4u(left, words.a.w, 0u, 0u));
+        return GlintLevels(counts[0], none, none, none);
     }
     let a = glint_quad_weight(weights.a);
     let b = glint_quad_weight(weights.b);
     if levels <= 8u {
-        let halves = glint_split(root, a, b, words.a.y);
-        return GlintLevels(
-            glint_multinomial_quad(halves.hits, weights.a, words.a.z, words.b.x, words.b.y),
-            glint_multinomial_quad(halves.misses, weights.b, words.a.w, words.b.z, words.b.w),
-            none, none,
-        );
+        let halves = glint_splits(root, vec4f(a, none.xyz), vec4f(b, none.xyz), vec4u(words.a.y, 0u, 0u, 0u));
+        let counts =
+            glint_multinomial_eight(glint_pair_counts(halves), weights.a, weights.b, words.a.zw, words.b);
+        return GlintLevels(counts[0], counts[1], none, none);
     }
     let c = glint_quad_weight(weights.c);
     let d = glint_quad_weight(weights.d);
-    let halves = glint_split(root, a + b, c + d, words.a.y);
-    let dark = glint_split(halves.hits, a, b, words.a.z);
-    let bright = glint_split(halves.misses, c, d, words.a.w);
-    var tops = array<GlintCount, 4>(dark.hits, dark.misses, bright.hits, bright.misses);
-    var weight = array<vec4f, 4>(weights.a, weights.b, weights.c, weights.d);
-    var top = array<u32, 4>(words.b.x, words.b.y, words.b.z, words.b.w);
-    var left = array<u32, 4>(words.c.x, words.c.z, words.d.x, words.d.z);
-    var right = array<u32, 4>(words.c.y, words.c.w, words.d.y, words.d.w);
-    var counts = array<vec4f, 4>(none, none, none, none);
-    // A loop, which keeps the program small.
-    for (var quad = 0u; quad < 4u; quad++) {
-        counts[quad] = glint_multinomial_quad(tops[quad], weight[quad], top[quad], left[quad], right[quad]);
-    }
-    return GlintLevels(counts[0], counts[1], counts[2], counts[3]);
+    let halves = glint_splits(root, vec4f(a + b, none.xyz), vec4f(c + d, none.xyz), vec4u(words.a.y, 0u, 0u, 0u));
+    let quarters = glint_pair_counts(
+        glint_splits(glint_pair_counts(halves), vec4f(a, c, none.xy), vec4f(b, d, none.xy), vec4u(words.a.zw, 0u, 0u)),
+    );
+    let dark = glint_multinomial_eight(quarters, weights.a, weights.b, words.b.xy, words.c);
+    let rest = GlintCounts(quarters.high.zwzw, quarters.low.zwzw);
+    let bright = glint_multinomial_eight(rest, weights.c, weights.d, words.b.zw, words.d);
+    return GlintLevels(dark[0], dark[1], bright[0], bright[1]);
 }

@@ -12,17 +12,13 @@ const GLINT_MAX_FACETS: f32 = 1.0e16;
 // (sqrt(3) - 1) / 2.
 const GLINT_SKEW: f32 = 0.3660254;
 
-// Three corners of one level: random states, and one over their weights.
-struct GlintSurfaceLevel {
+// The four corners around a place: random states, and one over their weights.
+struct GlintSurfaceCells {
     a: GlintCellState,
     b: GlintCellState,
     c: GlintCellState,
-    inverse_weights: vec3f,
-}
-
-struct GlintSurfaceCells {
-    fine: GlintSurfaceLevel,
-    coarse: GlintSurfaceLevel,
+    d: GlintCellState,
+    inverse_weights: vec4f,
 }
 
 // Area of a pixel whose place changes by `d_dx` and `d_dy` along the screen's axes.
@@ -43,80 +39,117 @@ fn glint_footprint_facets(area: f32, density: f32) -> f32 {
     return clamp(area * density, 0.0, GLINT_MAX_FACETS);
 }
 
-fn glint_surface_level(position: vec2f, level: i32, share: f32, surface_seed: u32) -> GlintSurfaceLevel {
-    // 2^-level, exactly.
-    let scale = bitcast<f32>(u32(127 - level) << 23u);
-    let limit = vec2f(1.0e9);
-    let p = clamp(position * scale, -limit, limit);
-    let q = p + vec2f((p.x + p.y) * GLINT_SKEW);
-    let base = floor(q);
-    let f = q - base;
-    let cell = bitcast<vec2u>(vec2i(base));
-    let below = f.x > f.y;
-    let high = max(f.x, f.y);
-    let low = min(f.x, f.y);
-    let side = select(vec2u(0u, 1u), vec2u(1u, 0u), below);
-    let seed = surface_seed ^ glint_mix_bits(bitcast<u32>(level));
-    let weights = vec3f(1.0 - high, high - low, low) * share;
-    return GlintSurfaceLevel(
-        glint_cell_state(cell.x, cell.y, seed),
-        glint_cell_state(cell.x + side.x, cell.y + side.y, seed),
-        glint_cell_state(cell.x + 1u, cell.y + 1u, seed),
-        1.0 / max(weights, vec3f(1.0e-12)),
-    );
+// Random state of the corner `offset` from `base` on the fine or the coarse grid: two Feistel rounds, a bijection of the place.
+fn glint_surface_corner(base: vec2i, offset: vec2i, coarse: bool, seeds: vec2u) -> GlintCellState {
+    let at = bitcast<vec2u>(select(base + base, base, coarse) + offset);
+    let seed = select(seeds.x, seeds.y, coarse);
+    let a = at.x + glint_mix_bits(at.y + seed);
+    return GlintCellState(a, at.y + glint_mix_bits(a ^ seed));
+}
+
+// Seed of a level's grid.
+fn glint_surface_seed(level: i32, seed: u32) -> u32 {
+    return glint_mix_bits(seed + bitcast<u32>(level) * 0x9e3779b9u);
 }
 
 // The corners around `position` for a pixel of level `lod` (glint_surface_lod).
 fn glint_surface_cells(position: vec2f, lod: f32, seed: u32) -> GlintSurfaceCells {
     let fine = floor(lod);
-    let blend = lod - fine;
+    let t = lod - fine;
     let level = i32(fine);
+    // 2^-(level + 1), exactly.
+    let scale = bitcast<f32>(u32(126 - level) << 23u);
+    let limit = vec2f(5.0e8);
+    let p = clamp(position * scale, -limit, limit);
+    let q = p + vec2f((p.x + p.y) * GLINT_SKEW);
+    let whole = floor(q);
+    let f = q - whole;
+    let base = vec2i(whole);
+    let below = f.x > f.y;
+    let c2 = 2.0 * min(f.x, f.y);
+    let a2 = 2.0 - 2.0 * max(f.x, f.y);
+    let b2 = 2.0 - a2 - c2;
+    let rest = 1.0 - t;
+    let alpha = a2 - rest;
+    let beta = b2 - rest;
+    let near_a = alpha >= 2.0 * t;
+    let near_b = beta >= 2.0 * t;
+    let near_c = c2 - rest >= 2.0 * t;
+    let coarse_a = alpha >= 0.0;
+    let coarse_b = beta >= 0.0;
+    // Weights of A', B', E and F of an octahedron.
+    let wa = clamp(0.5 * alpha, 0.0, t);
+    let wb = clamp(0.5 * beta, 0.0, t);
+    let we = max(-alpha, 0.0);
+    let wf = max(-beta, 0.0);
+    let w1 = select(select(select(we, b2, near_c), c2, near_b), wa, coarse_a);
+    let w2 = select(select(select(wf, a2, near_c), c2, near_a), wb, coarse_b);
+    let w3 = select(select(t - wa - wb, alpha - 2.0 * t, near_a), beta - 2.0 * t, near_b);
+    let w4 = select(select(select(rest - we - wf, c2 - rest - 2.0 * t, near_c), b2, near_a), a2, near_b);
+    let seeds = vec2u(glint_surface_seed(level, seed), glint_surface_seed(level + 1, seed));
+    let along = select(vec2i(0, 1), vec2i(1, 0), below);
+    let one = vec2i(1);
+    // E between B and C, or A'.
+    let first = select(one + along, vec2i(0), coarse_a);
+    // F between C and A, or B'.
+    let second = select(one, along, coarse_b);
+    // C', or A or B.
+    let third = select(select(one, vec2i(0), near_a), along + along, near_b);
+    // D between A and B, or C.
+    let fourth = select(along, vec2i(2), near_c);
     return GlintSurfaceCells(
-        glint_surface_level(position, level, 1.0 - blend, seed),
-        glint_surface_level(position, level + 1, blend, seed),
+        glint_surface_corner(base, first, coarse_a, seeds),
+        glint_surface_corner(base, second, coarse_b, seeds),
+        glint_surface_corner(base, third, !(near_a || near_b), seeds),
+        glint_surface_corner(base, fourth, false, seeds),
+        1.0 / max(vec4f(w1, w2, w3, w4), vec4f(1.0e-12)),
     );
 }
 
-// -ln(1 - h) for h in (0, 1), off by 1e-6 of itself.
-fn glint_exponential(h: f32) -> f32 {
-    let high = 0.18720224 + h * (0.5240135 + h * (-0.6401686 + h * 0.9920757));
-    let small = h * (1.000001 + h * (0.49981508 + h * (0.3389499 + h * high)));
-    return select(small, -log(1.0 - h), h > 0.5);
+// -log2(1 - h) for h = (bits + 1/2) / 2^32, off by 1e-6 of itself: exponential numbers of mean 1 / ln 2.
+fn glint_halvings_from_bits(bits: vec4u) -> vec4f {
+    let signed = bitcast<vec4i>(bits);
+    // All ones where h is above 1/2.
+    let upper = signed >> vec4u(31u);
+    // Distance of h to the nearer of 0 and 1, and its mantissa in [1/2, 1).
+    let x = (vec4f(signed ^ upper) + 0.5) * (1.0 / 4294967296.0);
+    let number = bitcast<vec4i>(x);
+    let mantissa = bitcast<vec4f>((number & vec4i(0x007fffff)) | vec4i(0x3f000000));
+    let whole = vec4f((126 - (number >> vec4u(23u))) & upper);
+    return whole + glint_halvings(select(x, 1.0 - mantissa, upper != vec4i(0)));
 }
 
-fn glint_level_exponential(level: GlintSurfaceLevel, index: u32) -> f32 {
-    let a = glint_exponential(glint_unit_from_bits(glint_draw_bits(level.a, index))) * level.inverse_weights.x;
-    let b = glint_exponential(glint_unit_from_bits(glint_draw_bits(level.b, index))) * level.inverse_weights.y;
-    let c = glint_exponential(glint_unit_from_bits(glint_draw_bits(level.c, index))) * level.inverse_weights.z;
-    return min(min(a, b), c);
+// The least exponential number of a place's corners, draw `index`.
+fn glint_surface_least(cells: GlintSurfaceCells, index: u32) -> f32 {
+    let bits = vec4u(
+        glint_draw_bits(cells.a, index), glint_draw_bits(cells.b, index),
+        glint_draw_bits(cells.c, index), glint_draw_bits(cells.d, index),
+    );
+    let all = glint_halvings_from_bits(bits) * cells.inverse_weights;
+    return min(min(all.x, all.y), min(all.z, all.w));
 }
 
-// Word `index` of a place: uniform, and small where a corner has a rare number.
-fn glint_surface_word(cells: GlintSurfaceCells, index: u32) -> u32 {
-    let least = min(glint_level_exponential(cells.fine, index), glint_level_exponential(cells.coarse, index));
-    return u32(min(glint_one_minus_exp(least) * 4294967296.0, 4294967040.0));
+// Words `index` to `index` + 3 of a place: uniform, and small where a corner has a rare number.
+fn glint_surface_four_words(cells: GlintSurfaceCells, index: u32) -> vec4u {
+    let least = vec4f(
+        glint_surface_least(cells, index), glint_surface_least(cells, index + 1u),
+        glint_surface_least(cells, index + 2u), glint_surface_least(cells, index + 3u),
+    );
+    // After 24 halvings no f32 is nearer to 1.
+    return vec4u(glint_halved(min(least, vec4f(24.0))).lost * 4294967296.0);
 }
 
 // The words that a multinomial draw of `levels` levels reads: small where the facet of a fraction is there, large where the
 // brighter branch of a node gets more.
 fn glint_surface_words(cells: GlintSurfaceCells, levels: u32) -> GlintWords {
-    let first = vec4u(
-        glint_surface_word(cells, 0u), ~glint_surface_word(cells, 1u),
-        ~glint_surface_word(cells, 2u), ~glint_surface_word(cells, 3u),
-    );
-    if levels <= 4u {
-        return GlintWords(first, vec4u(0u), vec4u(0u), vec4u(0u));
+    let first = glint_surface_four_words(cells, 0u) ^ vec4u(0u, vec3u(0xffffffffu));
+    var words = GlintWords(first, vec4u(0u), vec4u(0u), vec4u(0u));
+    if levels > 4u {
+        words.b = ~glint_surface_four_words(cells, 4u);
     }
-    let second = vec4u(
-        ~glint_surface_word(cells, 4u), ~glint_surface_word(cells, 5u),
-        ~glint_surface_word(cells, 6u), ~glint_surface_word(cells, 7u),
-    );
-    if levels <= 8u {
-        return GlintWords(first, second, vec4u(0u), vec4u(0u));
+    if levels > 8u {
+        words.c = ~glint_surface_four_words(cells, 8u);
+        words.d = ~glint_surface_four_words(cells, 12u);
     }
-    var words = array<vec4u, 4>(first, second, vec4u(0u), vec4u(0u));
-    for (var i = 8u; i < 16u; i++) {
-        words[i / 4u][i % 4u] = ~glint_surface_word(cells, i);
-    }
-    return GlintWords(words[0], words[1], words[2], words[3]);
+    return words;
 }

@@ -21,6 +21,7 @@ fn shade_environment(point: ViewPoint) -> vec3f {
     let cells = glint_surface_cells(point.uv, glint_surface_lod(area), material.seed);
     let data = shade_environment_data();
     let words = glint_surface_words(cells, data.levels);
+    glint_large_counts = false;
     return glint_environment_glints(data, surface, words) * scene.environment_gain;
 }
 
