@@ -1,6 +1,6 @@
 //! What can be shown of a pack: a method with its data, its parameters, and the WGSL that draws it.
 
-use super::uniforms::Material;
+use super::uniforms::{ACCURATE, Material};
 use crate::gpu::Resources;
 use std::rc::Rc;
 
@@ -111,6 +111,7 @@ impl Method {
     pub(super) fn constants(self, material: &Material) -> Vec<(&'static str, f64)> {
         match self {
             Method::AreaLight => vec![("AREA_LIGHT_DIRECTIONAL", f64::from(u8::from(material.lobes > 0)))],
+            Method::NdfMaps => vec![("NDF_MAPS_ACCURATE", f64::from(u8::from(material.switches & ACCURATE != 0)))],
             _ => Vec::new(),
         }
     }
