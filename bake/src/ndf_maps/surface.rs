@@ -262,7 +262,7 @@ impl Material {
         (owner.class_and_owners & 0xff, centre, unorm(owner.offset) * self.size())
     }
 
-    /// The top tile under every transform, by the share of cells that use it.
+    /// The top tile under every transform, by the share of cells that use it: of blocks in the full reach, else there might be none.
     fn gather_classes(&self, ellipse: &Ellipse, cells: Cells, settings: EvalSettings, gathered: &mut Gathered) {
         let most = MOST_OF_TERMS * settings.max_terms as f32;
         let (mut mip, mut block) = (0, cells.edge);
@@ -281,7 +281,6 @@ impl Material {
             // The block that holds the base cell, and where it begins.
             let first = cells.base >> mip;
             let origin = ((first << mip) - cells.base).as_vec2() * cells.edge;
-            // At a smaller reach a footprint might lie between the middles of its blocks.
             let from_first = Ellipse { mean: widened.mean - origin, reach: REACH, ..widened };
             for_each_cell(&from_first, Grid { origin: 0.0, edge: block }, EVERYWHERE, |i, j, centre| {
                 let weight = from_first.density(centre) * block * block;
