@@ -40,7 +40,7 @@ What bounds each, a pixel:
 | --- | --- | --- |
 | smooth | none | an exponential |
 | dictionary | two 4-byte loads a cell, for all cells under the footprint on two levels | a cell: its hash, a sine and a cosine, an exponential |
-| NDF maps | nine texels a tile, for all tiles under the footprint; one word of a mask outside the highlight | a tile: two splines; a box: four error functions |
+| NDF maps | a tile: nine texels in one 16-byte load, two 16-byte loads of its place; a sub-region: two 16-byte loads of noise, two of its transform, two of levels; one word of a mask outside the highlight | a tile: two splines; a box: four error functions |
 | lobes, surfaces | one 16-byte load a lobe, for all lobes under the footprint | a lobe: a 2 × 2 inverse, two exponentials |
 | environment | smooth: a cube and a table; glints: one cube more for every four levels | four hashes with a polynomial each for a word; a word and a binomial draw for each level but one, and one word more |
 | area light | as plain LTC: one map (two with directions), two tables | a power and two roots more than plain LTC, once a lobe |

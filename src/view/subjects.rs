@@ -83,12 +83,14 @@ impl Subjects {
             let (base, coat) = (read(&layered.base)?, read(&layered.coat)?);
             let data = Rc::new(methods::ndf_maps::upload(gpu, &base, Some((&coat, layered.coat_f0)))?);
             let material = Material { f0: layered.base_f0, ..ndf_material(&base) };
-            self.add(Method::NdfMaps, &format!("{}+{}", layered.coat, layered.base), &data, material);
+            let shown = self.add(Method::NdfMaps, &format!("{}+{}", layered.coat, layered.base), &data, material);
+            shown.constants = methods::ndf_maps::constants(&base, Some(&coat));
         }
         for name in ndf_maps::sections::materials(pack) {
             let baked = read(name)?;
             let data = Rc::new(methods::ndf_maps::upload(gpu, &baked, None)?);
-            self.add(Method::NdfMaps, name, &data, ndf_material(&baked));
+            let shown = self.add(Method::NdfMaps, name, &data, ndf_material(&baked));
+            shown.constants = methods::ndf_maps::constants(&baked, None);
         }
         Ok(())
     }

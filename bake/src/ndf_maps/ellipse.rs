@@ -4,7 +4,8 @@ use crate::footprint::Footprint;
 use glam::{Mat2, Vec2};
 use glint_formats::ndf_maps::Level;
 
-/// Tiles lie within this many standard deviations of the footprint's centre; 2 % of its mass is farther out.
+/// Pieces lie within this many standard deviations of the footprint's centre unless settings say otherwise; 2 % of
+/// its mass is farther out.
 pub const REACH: f32 = 2.8;
 /// Finest boxes: below this edge positions have no digits left.
 pub const FINEST_TEXELS: f32 = 1.0 / 4096.0;
@@ -16,14 +17,16 @@ pub struct Ellipse {
     pub major_axis: Vec2,
     pub minor: f32,
     pub major: f32,
+    /// Pieces lie within this many standard deviations of the mean.
+    pub reach: f32,
 }
 
 impl Ellipse {
-    pub fn new(footprint: &Footprint) -> Ellipse {
+    pub fn new(footprint: &Footprint, reach: f32) -> Ellipse {
         let (minor, major, axis) = footprint.principal();
         // A point is a footprint of the finest box's size.
         let [minor, major] = [minor, major].map(|sigma| (sigma as f32).max(0.5 * FINEST_TEXELS));
-        Ellipse { mean: footprint.mean.as_vec2(), major_axis: axis.as_vec2(), minor, major }
+        Ellipse { mean: footprint.mean.as_vec2(), major_axis: axis.as_vec2(), minor, major, reach }
     }
 
     /// The ellipse in coordinates x' = m · x + offset. The minor axis follows from the area, which keeps its digits.
@@ -43,6 +46,7 @@ impl Ellipse {
             major_axis: twice_axis.normalize_or(Vec2::X),
             minor: (m.determinant() * self.major * self.minor).abs() / major,
             major,
+            reach: self.reach,
         }
     }
 
@@ -78,10 +82,10 @@ impl Ellipse {
             + across * (-d.dot(across) / (self.minor * self.minor))
     }
 
-    /// Half the height of the ellipse of `REACH` standard deviations.
+    /// Half the height of the ellipse of its reach.
     pub fn reach_y(&self) -> f32 {
         let e = self.major_axis;
-        REACH * ((e.y * self.major).powi(2) + (e.x * self.minor).powi(2)).sqrt()
+        self.reach * ((e.y * self.major).powi(2) + (e.x * self.minor).powi(2)).sqrt()
     }
 
     /// The ellipse's range of x at height y, if it reaches there.
@@ -91,7 +95,7 @@ impl Ellipse {
         let a = e.x * e.x * p + e.y * e.y * q;
         let b = e.x * e.y * (p - q);
         let dy = y - self.mean.y;
-        let inner = REACH * REACH * a - dy * dy * p * q;
+        let inner = self.reach * self.reach * a - dy * dy * p * q;
         if inner < 0.0 {
             return None;
         }

@@ -16,12 +16,10 @@ use glint_formats::ndf_maps::{Level, PlacementKind};
 const LOBE_TEXELS: f32 = 1.0;
 /// Sub-regions of a stochastic surface that a footprint visits at most.
 const MAX_REGIONS: f32 = 64.0;
-/// From this minor axis on (in sub-regions) the share of a sub-region follows from its middle to 2.4 %; where top tiles are
-/// enough, one tells all of it.
+/// From this minor axis on (in sub-regions) a sub-region's middle tells its share to 2.4 %, and one top tile, if enough, all of it.
 const WHOLE_REGION_SIGMA: f32 = 0.5;
 /// From this minor axis on (in example edges) shares of tiled examples are even to 1.4 % and the top tile is enough.
 const TOP_TILE_SIGMA: f32 = 0.5;
-
 /// Pieces under a footprint that is widened by their own size, at most, relative to `max_terms`: thin footprints are seen in
 /// pieces wider than they are.
 const MOST_OF_TERMS: f32 = 4.0;
@@ -42,11 +40,13 @@ pub struct EvalSettings {
     pub max_terms: u32,
     /// How often a tile that a sub-region shows only in part is split.
     pub splits: u32,
+    /// Pieces lie within this many standard deviations of the footprint's centre; 2 % of its mass is beyond 2.8, 14 % beyond 2.
+    pub reach: f32,
 }
 
 impl Default for EvalSettings {
     fn default() -> EvalSettings {
-        EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 0.75, max_terms: 128, splits: 1 }
+        EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 0.75, max_terms: 128, splits: 1, reach: REACH }
     }
 }
 
@@ -91,7 +91,7 @@ impl Material {
     fn gather_tiled(&self, footprint: &Footprint, settings: EvalSettings, gathered: &mut Gathered) {
         let to_local = self.position_to_local(0);
         let mean = within_period(to_local.as_dmat2() * footprint.mean, self.example_size());
-        let ellipse = Ellipse { mean, ..Ellipse::new(footprint).transformed(to_local, Vec2::ZERO) };
+        let ellipse = Ellipse { mean, ..Ellipse::new(footprint, settings.reach).transformed(to_local, Vec2::ZERO) };
         let size = self.example_size().max_element() as f32;
         if ellipse.minor >= TOP_TILE_SIGMA * size {
             return gathered.add_tile(TileTerm { tile: self.top_tile(), class: 0, weight: 1.0 });
@@ -152,7 +152,7 @@ impl Material {
     }
 
     fn gather_stochastic(&self, footprint: &Footprint, cells: Cells, settings: EvalSettings, gathered: &mut Gathered) {
-        let ellipse = Ellipse { mean: cells.mean, ..Ellipse::new(footprint) };
+        let ellipse = Ellipse { mean: cells.mean, ..Ellipse::new(footprint, settings.reach) };
         let region = 0.5 * cells.edge;
         let regions = (2.0 * REACH).powi(2) * ellipse.major * ellipse.minor.max(region) / (region * region);
         if ellipse.minor >= CLASS_SIGMA_CELLS * cells.edge || regions > MAX_REGIONS.min(settings.max_terms as f32) {
@@ -262,7 +262,7 @@ impl Material {
         (owner.class_and_owners & 0xff, centre, unorm(owner.offset) * self.size())
     }
 
-    /// The top tile under every transform, by the share of cells that use it.
+    /// The top tile under every transform, by the share of cells that use it: of blocks in the full reach, else there might be none.
     fn gather_classes(&self, ellipse: &Ellipse, cells: Cells, settings: EvalSettings, gathered: &mut Gathered) {
         let most = MOST_OF_TERMS * settings.max_terms as f32;
         let (mut mip, mut block) = (0, cells.edge);
@@ -281,7 +281,7 @@ impl Material {
             // The block that holds the base cell, and where it begins.
             let first = cells.base >> mip;
             let origin = ((first << mip) - cells.base).as_vec2() * cells.edge;
-            let from_first = Ellipse { mean: widened.mean - origin, ..widened };
+            let from_first = Ellipse { mean: widened.mean - origin, reach: REACH, ..widened };
             for_each_cell(&from_first, Grid { origin: 0.0, edge: block }, EVERYWHERE, |i, j, centre| {
                 let weight = from_first.density(centre) * block * block;
                 self.add_shares(mip, first + IVec2::new(i, j), weight, cells, &mut shares);

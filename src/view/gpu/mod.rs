@@ -6,4 +6,4 @@ mod resources;
 
 pub use compute::{answer, read_back};
 pub use device::{Gpu, GpuError, Wish};
-pub use resources::{GpuTexture, ResourceSet, Resources};
+pub use resources::{GpuTexture, ResourceSet, Resources, TABLE_WIDTH};

@@ -1,8 +1,9 @@
 //! NDF maps and their placement on the GPU: `bind_ndf_maps.wgsl`.
 
+mod blocks;
 mod reach;
 
-use crate::gpu::{Gpu, GpuError, ResourceSet, Resources};
+use crate::gpu::{Gpu, GpuError, ResourceSet, Resources, TABLE_WIDTH};
 use bytemuck::{Pod, Zeroable};
 use glint_bake_core::ndf_maps::eval::Material;
 use glint_formats::ndf_maps::{DensityStorage, PlacementKind, Wrap};
@@ -27,8 +28,10 @@ struct MaterialUniform {
     normal_words: u32,
     class_words: u32,
     reach_words: u32,
+    blocks: u32,
+    few_tiles: u32,
     /// Layers begin at multiples of 16 bytes.
-    unused: [u32; 3],
+    unused: u32,
 }
 
 /// `NdfMapsData`.
@@ -41,11 +44,18 @@ struct DataUniform {
     unused: [u32; 2],
 }
 
-/// The two buffers while they are filled.
+/// Elements of `NdfMapsData.records`: as many as fit in the 64 KiB that every adapter binds.
+const RECORDS: usize = 4000;
+
+/// The tables while they are filled.
 #[derive(Default)]
-struct Buffers {
+struct Tables {
+    /// Levels and palettes.
     records: Vec<u8>,
+    tiles: Vec<u8>,
+    noise: Vec<u8>,
     words: Vec<u8>,
+    blocks: Vec<[u32; 4]>,
 }
 
 /// Appends whole units of `unit` bytes and returns the index of the first.
@@ -56,7 +66,7 @@ fn append(buffer: &mut Vec<u8>, unit: usize, bytes: &[u8]) -> u32 {
     first
 }
 
-impl Buffers {
+impl Tables {
     fn record(&mut self, bytes: &[u8]) -> u32 {
         append(&mut self.records, 16, bytes)
     }
@@ -65,9 +75,18 @@ impl Buffers {
         append(&mut self.words, 4, bytes)
     }
 
-    /// Adds a material's sections, bytes as in the pack.
+    /// Adds a material's sections: bytes as in the pack, but for the density where it goes into blocks.
     fn add(&mut self, material: &Material) -> MaterialUniform {
         let Material { maps, placement } = material;
+        let blocks = blocks::of(maps, self.blocks.len());
+        let mut tiles = maps.tiles.clone();
+        if let Some(blocks) = &blocks {
+            for (tile, first) in tiles.iter_mut().zip(&blocks.first) {
+                // Nothing that is drawn needs the tile's error.
+                tile.error = f32::from_bits(*first);
+            }
+            self.blocks.extend(&blocks.blocks);
+        }
         let levels: Vec<[u32; 4]> =
             maps.params.levels.iter().map(|l| [l.tile_texels, l.tiles_x, l.tiles_y, l.first_tile]).collect();
         let (cells, cell_texels) = match placement.params.kind {
@@ -91,14 +110,16 @@ impl Buffers {
             cells,
             cell_texels,
             level_records: self.record(bytemuck::cast_slice(&levels)),
-            tile_records: self.record(bytemuck::cast_slice(&maps.tiles)),
+            tile_records: append(&mut self.tiles, 16, bytemuck::cast_slice(&tiles)),
             palette_records: self.record(bytemuck::cast_slice(&placement.palette)),
-            noise_records: self.record(bytemuck::cast_slice(&placement.noise)),
-            density_words: self.word(&maps.density),
+            noise_records: append(&mut self.noise, 16, bytemuck::cast_slice(&placement.noise)),
+            density_words: self.word(if blocks.is_some() { &[] } else { &maps.density }),
             normal_words: self.word(bytemuck::cast_slice(&maps.normals)),
             class_words: self.word(&placement.classes),
             reach_words: self.word(bytemuck::cast_slice(&reach::mask(material))),
-            unused: [0; 3],
+            blocks: u32::from(blocks.is_some()),
+            few_tiles: 0,
+            unused: 0,
         }
     }
 }
@@ -106,25 +127,61 @@ impl Buffers {
 /// Uploads a material, or the base of a layered one with its clear coat and that one's reflectance at normal incidence.
 /// Errors: materials larger than what a program can bind.
 pub fn upload(gpu: &Gpu, base: &Material, coat: Option<(&Material, f32)>) -> Result<Resources, GpuError> {
-    let mut buffers = Buffers::default();
+    let mut tables = Tables::default();
     let mut data = DataUniform { count: 1, ..DataUniform::default() };
-    data.layers[0] = buffers.add(base);
+    data.layers[0] = tables.add(base);
     if let Some((coat, f0)) = coat {
-        data.layers[1] = buffers.add(coat);
+        data.layers[1] = tables.add(coat);
         data.count = 2;
         data.coat_f0 = f0;
     }
-    let limit = gpu.device.limits().max_storage_buffer_binding_size;
-    let largest = buffers.records.len().max(buffers.words.len()) as u64;
+    // Tiles come last: after the levels and palettes, or after the noise maps.
+    let few_tiles = tables.records.len() + tables.tiles.len() <= 16 * RECORDS;
+    let with_tiles = if few_tiles { &mut tables.records } else { &mut tables.noise };
+    let before = append(with_tiles, 16, &tables.tiles);
+    for layer in &mut data.layers {
+        layer.tile_records += before;
+        layer.few_tiles = u32::from(few_tiles);
+    }
+    if tables.records.len() > 16 * RECORDS {
+        return Err(GpuError::BadPack("the palettes of the NDF maps have too many transforms".into()));
+    }
+    tables.records.resize(16 * RECORDS, 0);
+    let limit = u64::from(gpu.device.limits().max_texture_dimension_2d) * u64::from(TABLE_WIDTH);
+    let largest = (tables.noise.len() / 16).max(tables.words.len() / 4).max(tables.blocks.len()) as u64;
     if largest > limit {
         return Err(GpuError::BadPack(format!(
-            "the NDF maps need a buffer of {largest} bytes, and the GPU binds {limit} at most; bake with fewer cells or a \
+            "the NDF maps need a table of {largest} elements, and the GPU has {limit} at most; bake with fewer cells or a \
              smaller palette"
         )));
     }
     let mut set = ResourceSet::default();
-    set.uniform(gpu, bytemuck::bytes_of(&data));
-    set.storage(gpu, &buffers.records);
-    set.storage(gpu, &buffers.words);
+    set.uniform(gpu, &[bytemuck::bytes_of(&data), &tables.records].concat());
+    set.table(gpu, wgpu::TextureFormat::Rgba32Uint, &tables.noise);
+    set.table(gpu, wgpu::TextureFormat::R32Uint, &tables.words);
+    set.table(gpu, wgpu::TextureFormat::Rgba32Uint, bytemuck::cast_slice(&tables.blocks));
     Ok(set.finish(gpu))
+}
+
+/// Pipeline constants that follow from the data: `NDF_MAPS_LAYERS`, `NDF_MAPS_CELLS`, `NDF_MAPS_BLOCKS` and `NDF_MAPS_FEW_TILES`. What two layers do not
+/// share is left open.
+pub fn constants(base: &Material, coat: Option<&Material>) -> Vec<(&'static str, f64)> {
+    let cells = |material: &Material| match material.placement.params.kind {
+        PlacementKind::Tiled => 0,
+        PlacementKind::Stochastic { cells_x, .. } => cells_x,
+    };
+    let has_blocks = |material: &Material| blocks::count(&material.maps).is_some();
+    let mut constants = vec![("NDF_MAPS_LAYERS", if coat.is_some() { 2.0 } else { 1.0 })];
+    if coat.is_none_or(|coat| cells(coat) == cells(base)) {
+        constants.push(("NDF_MAPS_CELLS", f64::from(cells(base))));
+    }
+    if coat.is_none_or(|coat| has_blocks(coat) == has_blocks(base)) {
+        constants.push(("NDF_MAPS_BLOCKS", f64::from(u8::from(has_blocks(base)))));
+    }
+    let records = |material: &Material| {
+        material.maps.params.levels.len() + 2 * (material.maps.tiles.len() + material.placement.palette.len())
+    };
+    let few_tiles = records(base) + coat.map_or(0, records) <= RECORDS;
+    constants.push(("NDF_MAPS_FEW_TILES", f64::from(u8::from(few_tiles))));
+    constants
 }

@@ -1,6 +1,6 @@
 //! What can be shown of a pack: a method with its data, its parameters, and the WGSL that draws it.
 
-use super::uniforms::Material;
+use super::uniforms::{ACCURATE, Material};
 use crate::gpu::Resources;
 use std::rc::Rc;
 
@@ -116,6 +116,7 @@ impl Method {
                 asks("DICTIONARY_RANDOMISED", material.density_randomisation > 0.0),
                 asks("DICTIONARY_COLOURED", material.colours > 0),
             ],
+            Method::NdfMaps => vec![asks("NDF_MAPS_ACCURATE", material.switches & ACCURATE != 0)],
             Method::AreaLight => vec![asks("AREA_LIGHT_DIRECTIONAL", material.lobes > 0)],
             _ => Vec::new(),
         }

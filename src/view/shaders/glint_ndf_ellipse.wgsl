@@ -1,7 +1,7 @@
 // A footprint as an ellipse, and one tile or box under it: what glint_ndf_maps.wgsl walks over.
 // Twin of glint-bake-core ndf_maps/ellipse.rs. No accessors; lengths are texels.
 
-// Pieces lie within this many standard deviations of the footprint's centre; 2 % of its mass is farther out.
+// In estimates of how many there are, pieces lie within this many standard deviations of the footprint's centre.
 const GLINT_NDF_REACH: f32 = 2.8;
 // Finest boxes: below this edge positions have no digits left.
 const GLINT_NDF_FINEST_TEXELS: f32 = 0.000244140625;
@@ -15,6 +15,8 @@ struct GlintNdfEllipse {
     axis: vec2f,
     major: f32,
     minor: f32,
+    // Pieces lie within this many standard deviations of the mean.
+    reach: f32,
 }
 
 // A matrix by rows, m00 m01 m10 m11, times a vector.
@@ -31,11 +33,11 @@ fn glint_ndf_inverse(m: vec4f) -> vec4f {
 }
 
 // A footprint with its centre at the origin. A point is a footprint of the finest box's size.
-fn glint_ndf_ellipse(footprint: GlintFootprint) -> GlintNdfEllipse {
+fn glint_ndf_ellipse(footprint: GlintFootprint, reach: f32) -> GlintNdfEllipse {
     let principal = glint_principal(footprint);
     let least = 0.5 * GLINT_NDF_FINEST_TEXELS;
     return GlintNdfEllipse(
-        vec2f(0.0), principal.axis, clamp(principal.major, least, 1.0e9), clamp(principal.minor, least, 1.0e9),
+        vec2f(0.0), principal.axis, clamp(principal.major, least, 1.0e9), clamp(principal.minor, least, 1.0e9), reach,
     );
 }
 
@@ -47,13 +49,13 @@ fn glint_ndf_transformed(e: GlintNdfEllipse, m: vec4f, offset: vec2f) -> GlintNd
     let h = sqrt(half_gap.x * half_gap.x + half_gap.y * half_gap.y);
     let major = sqrt(0.5 * (dot(p, p) + dot(q, q)) + h);
     let minor = abs(glint_ndf_determinant(m) * e.major * e.minor) / major;
-    return GlintNdfEllipse(glint_ndf_apply(m, e.mean) + offset, glint_half_angle(half_gap), major, minor);
+    return GlintNdfEllipse(glint_ndf_apply(m, e.mean) + offset, glint_half_angle(half_gap), major, minor, e.reach);
 }
 
 // Widened by a box of edge `edge`.
 fn glint_ndf_widened(e: GlintNdfEllipse, edge: f32) -> GlintNdfEllipse {
     let extra = edge * edge / 12.0;
-    return GlintNdfEllipse(e.mean, e.axis, sqrt(e.major * e.major + extra), sqrt(e.minor * e.minor + extra));
+    return GlintNdfEllipse(e.mean, e.axis, sqrt(e.major * e.major + extra), sqrt(e.minor * e.minor + extra), e.reach);
 }
 
 // Pieces of `edge` in the box around the ellipse that is widened by them.
@@ -70,6 +72,17 @@ fn glint_ndf_gaussian(e: GlintNdfEllipse, x: vec2f) -> f32 {
     return exp(-0.5 * (along * along + across * across)) / (6.2831853 * e.minor * e.major);
 }
 
+// That of the ellipse widened by a box of edge `edge`.
+fn glint_ndf_widened_gaussian(e: GlintNdfEllipse, edge: f32, x: vec2f) -> f32 {
+    let d = x - e.mean;
+    let along = dot(d, e.axis);
+    let across = d.x * e.axis.y - d.y * e.axis.x;
+    let extra = edge * edge / 12.0;
+    let p = 1.0 / (e.major * e.major + extra);
+    let q = 1.0 / (e.minor * e.minor + extra);
+    return exp(-0.5 * (along * along * p + across * across * q)) * sqrt(p * q) * 0.15915494;
+}
+
 // Gradient of the density's logarithm at x.
 fn glint_ndf_log_gradient(e: GlintNdfEllipse, x: vec2f) -> vec2f {
     let d = x - e.mean;
@@ -77,11 +90,11 @@ fn glint_ndf_log_gradient(e: GlintNdfEllipse, x: vec2f) -> vec2f {
     return e.axis * (-dot(d, e.axis) / (e.major * e.major)) + across * (-dot(d, across) / (e.minor * e.minor));
 }
 
-// Half the height of the ellipse of GLINT_NDF_REACH standard deviations.
+// Half the height of the ellipse of its reach.
 fn glint_ndf_reach_y(e: GlintNdfEllipse) -> f32 {
     let y = e.axis.y * e.major;
     let x = e.axis.x * e.minor;
-    return GLINT_NDF_REACH * sqrt(y * y + x * x);
+    return e.reach * sqrt(y * y + x * x);
 }
 
 // The ellipse's range of x at height y; an empty one where it does not reach.
@@ -91,7 +104,7 @@ fn glint_ndf_span_x(e: GlintNdfEllipse, y: f32) -> vec2f {
     let a = e.axis.x * e.axis.x * p + e.axis.y * e.axis.y * q;
     let b = e.axis.x * e.axis.y * (p - q);
     let dy = y - e.mean.y;
-    let inner = GLINT_NDF_REACH * GLINT_NDF_REACH * a - dy * dy * p * q;
+    let inner = e.reach * e.reach * a - dy * dy * p * q;
     if !(inner >= 0.0) {
         return vec2f(1.0e30, -1.0e30);
     }

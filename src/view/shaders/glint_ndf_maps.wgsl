@@ -4,7 +4,11 @@
 // lists the tiles and lobes of a footprint and then sums; here the sum is taken on the way, in the same order.
 //
 // Accessors that the including program defines:
-//   fn glint_ndf_record(at: u32) -> vec4u   sixteen bytes of the tables: levels, tiles, palette, noise
+//   fn glint_ndf_block(at: u32) -> vec3u    three rows of three 8-bit density texels, the lowest bits first: see
+//                                           glint_ndf_block_density. Any value if no material has blocks
+//   fn glint_ndf_record(at: u32) -> vec4u   sixteen bytes of the levels and the palette
+//   fn glint_ndf_tile(at: u32) -> vec4u     sixteen bytes of the tiles; any value if all materials have them among the records
+//   fn glint_ndf_noise_texel(at: u32) -> vec4u    a texel of the noise map
 //   fn glint_ndf_word(at: u32) -> u32       four bytes of the texels: density, normals, classes, reach. One word before and
 //                                           after a section may be asked for; what is there does not matter
 // Both read little-endian sections as they lie in the pack; GlintNdfMaterial says where each begins. Several materials may

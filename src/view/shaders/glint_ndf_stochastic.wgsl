@@ -32,7 +32,7 @@ fn glint_ndf_cells_around(material: GlintNdfMaterial, mean: vec2f) -> GlintNdfCe
 // Noise texel of a cell relative to the base.
 fn glint_ndf_noise(material: GlintNdfMaterial, cells: GlintNdfCells, cell: vec2i) -> vec4u {
     let at = vec2u(cells.base + cell) & vec2u(material.cells - 1u);
-    return glint_ndf_record(material.noise_records + at.y * material.cells + at.x);
+    return glint_ndf_noise_texel(material.noise_records + at.y * material.cells + at.x);
 }
 
 struct GlintNdfOwner {
@@ -61,7 +61,7 @@ fn glint_ndf_owner_of(material: GlintNdfMaterial, cells: GlintNdfCells, region: 
     );
 }
 
-// What a sub-region, by its index and middle, shows of its owner under the footprint.
+// What a sub-region, by its index and middle, shows of its owner under the footprint, if it shows it as `boxes` or as tiles.
 fn glint_ndf_region(
     material: GlintNdfMaterial,
     footprint: GlintNdfEllipse,
@@ -70,7 +70,9 @@ fn glint_ndf_region(
     middle: vec2f,
     settings: GlintNdfSettings,
     s: vec2f,
-) -> GlintNdfSum {
+    boxes: bool,
+    at_point: bool,
+) -> GlintNdfRegions {
     let owner = glint_ndf_owner_of(material, cells, region);
     let position = bitcast<vec4f>(glint_ndf_record(material.palette_records + 2u * owner.class_index));
     let normal = bitcast<vec4f>(glint_ndf_record(material.palette_records + 2u * owner.class_index + 1u));
@@ -81,21 +83,87 @@ fn glint_ndf_region(
     let jacobian = abs(glint_ndf_determinant(normal));
     let detail = glint_ndf_detail(material, ellipse, settings);
     let edge = 0.5 * material.cell_texels;
-    if detail.level == i32(material.levels) - 1 && footprint.minor >= GLINT_NDF_WHOLE_REGION_SIGMA * edge {
-        let weight = edge * edge * glint_ndf_gaussian(glint_ndf_widened(footprint, edge), middle);
-        let density = glint_ndf_tile_density(material, glint_ndf_top_tile(material), local_s);
-        return GlintNdfSum(weight * jacobian * density, weight, 1.0);
-    }
     let view = GlintNdfView(
         ellipse,
         glint_ndf_apply(position, middle - owner.centre) + owner.offset,
         glint_ndf_inverse(position),
-        1.0 / sqrt(abs(glint_ndf_determinant(position))),
+        inverseSqrt(abs(glint_ndf_determinant(position))),
         0.5 * edge,
         abs(position.xz) + abs(position.yw),
         jacobian,
     );
-    return glint_ndf_view_sum(material, view, settings, detail, local_s);
+    if boxes {
+        if detail.level >= 0 && !at_point {
+            return GlintNdfRegions(GlintNdfSum(0.0, 0.0, 0.0), false);
+        }
+        return GlintNdfRegions(glint_ndf_boxes(material, view, local_s, detail.edge, at_point), false);
+    }
+    if detail.level < 0 {
+        return GlintNdfRegions(GlintNdfSum(0.0, 0.0, 0.0), true);
+    }
+    if detail.level == i32(material.levels) - 1 && footprint.minor >= GLINT_NDF_WHOLE_REGION_SIGMA * edge {
+        let weight = edge * edge * glint_ndf_widened_gaussian(footprint, edge, middle);
+        let density = glint_ndf_tile_density(material, glint_ndf_top_tile(material), local_s);
+        return GlintNdfRegions(GlintNdfSum(weight * jacobian * density, weight, 1.0), false);
+    }
+    return GlintNdfRegions(glint_ndf_tiles(material, view, settings, local_s, u32(detail.level)), false);
+}
+
+// What sub-regions near a footprint show, those that are seen as boxes or those as tiles; or what the one at its centre shows there.
+struct GlintNdfRegions {
+    sum: GlintNdfSum,
+    // Whether, when tiles were asked for, there are some that are seen as boxes.
+    boxes: bool,
+}
+
+fn glint_ndf_regions(
+    material: GlintNdfMaterial,
+    ellipse: GlintNdfEllipse,
+    cells: GlintNdfCells,
+    settings: GlintNdfSettings,
+    s: vec2f,
+    boxes: bool,
+    at_point: bool,
+) -> GlintNdfRegions {
+    let region = 0.5 * material.cell_texels;
+    // A sub-region counts when its centre is near the footprint, widened so that a point reaches its corners.
+    let widened = glint_ndf_widened(ellipse, region * 1.2);
+    let reach = glint_ndf_reach_y(widened);
+    let shown = vec2i(floor(ellipse.mean / region));
+    var rows = glint_ndf_cells(0.0, region, widened.mean.y - reach, widened.mean.y + reach);
+    rows = select(rows, vec2i(shown.y, shown.y + 1), at_point);
+    var sum = GlintNdfSum(0.0, 0.0, 0.0);
+    var left = false;
+    // Loops test at their ends, too: adapters that run many pixels at a time in step save the round that finds nothing.
+    var j = rows.x;
+    loop {
+        if j >= rows.y {
+            break;
+        }
+        let y = glint_ndf_cell_centre(0.0, region, j);
+        let span = glint_ndf_span_x(widened, y);
+        var columns = glint_ndf_cells(0.0, region, span.x, span.y);
+        columns = select(columns, vec2i(shown.x, shown.x + 1), at_point);
+        var i = columns.x;
+        loop {
+            if i >= columns.y {
+                break;
+            }
+            let middle = vec2f(glint_ndf_cell_centre(0.0, region, i), y);
+            let found = glint_ndf_region(material, ellipse, cells, vec2i(i, j), middle, settings, s, boxes, at_point);
+            sum = glint_ndf_add(sum, found.sum);
+            left = left || found.boxes;
+            i += 1;
+            if i >= columns.y {
+                break;
+            }
+        }
+        j += 1;
+        if j >= rows.y {
+            break;
+        }
+    }
+    return GlintNdfRegions(sum, left);
 }
 
 // Shares of four palette entries in one texel of the class texture.
@@ -141,6 +209,8 @@ fn glint_ndf_classes(
         let origin = vec2f((first << vec2u(mip)) - cells.base) * material.cell_texels;
         var widened = glint_ndf_widened(ellipse, block);
         widened.mean -= origin;
+        // At a smaller reach a footprint might lie between the middles of its blocks.
+        widened.reach = GLINT_NDF_REACH;
         let reach = glint_ndf_reach_y(widened);
         let rows = glint_ndf_cells(0.0, block, widened.mean.y - reach, widened.mean.y + reach);
         for (var j = rows.x; j < rows.y; j++) {
@@ -182,7 +252,7 @@ fn glint_ndf_stochastic(
     s: vec2f,
 ) -> GlintNdfSum {
     let cells = glint_ndf_cells_around(material, footprint.mean);
-    var ellipse = glint_ndf_ellipse(footprint);
+    var ellipse = glint_ndf_ellipse(footprint, settings.reach);
     ellipse.mean = cells.mean;
     let region = 0.5 * material.cell_texels;
     let regions = 4.0 * GLINT_NDF_REACH * GLINT_NDF_REACH * ellipse.major * max(ellipse.minor, region) / (region * region);
@@ -190,25 +260,20 @@ fn glint_ndf_stochastic(
     if ellipse.minor >= GLINT_NDF_CLASS_SIGMA_CELLS * material.cell_texels || many {
         return glint_ndf_classes(material, ellipse, cells, settings, s);
     }
-    // A sub-region counts when its centre is near the footprint, widened so that a point reaches its corners.
-    let widened = glint_ndf_widened(ellipse, region * 1.2);
-    let reach = glint_ndf_reach_y(widened);
-    let rows = glint_ndf_cells(0.0, region, widened.mean.y - reach, widened.mean.y + reach);
-    var sum = GlintNdfSum(0.0, 0.0, 0.0);
-    for (var j = rows.x; j < rows.y; j++) {
-        let y = glint_ndf_cell_centre(0.0, region, j);
-        let span = glint_ndf_span_x(widened, y);
-        let columns = glint_ndf_cells(0.0, region, span.x, span.y);
-        for (var i = columns.x; i < columns.y; i++) {
-            let middle = vec2f(glint_ndf_cell_centre(0.0, region, i), y);
-            sum = glint_ndf_add(sum, glint_ndf_region(material, ellipse, cells, vec2i(i, j), middle, settings, s));
+    let tiles = glint_ndf_regions(material, ellipse, cells, settings, s, false, false);
+    var sum = tiles.sum;
+    if tiles.boxes || !(sum.share > 0.0) {
+        var at_point = !tiles.boxes;
+        for (var k = 0; k < 2; k++) {
+            sum = glint_ndf_add(sum, glint_ndf_regions(material, ellipse, cells, settings, s, true, at_point).sum);
+            // None has a share: the place alone.
+            if sum.share > 0.0 {
+                break;
+            }
+            at_point = true;
         }
     }
-    if sum.share > 0.0 {
-        return sum;
-    }
-    let shown = glint_ndf_shown_at(material, cells, ellipse.mean);
-    return glint_ndf_point(material, shown.class_index, shown.local, s);
+    return sum;
 }
 
 struct GlintNdfShown {

@@ -34,7 +34,7 @@ fn glint_ndf_tiled(
     let normal = bitcast<vec4f>(glint_ndf_record(material.palette_records + 1u));
     let size = vec2f(material.size);
     let within = glint_ndf_tiled_place(material, position, footprint.mean);
-    let ellipse = glint_ndf_transformed(glint_ndf_ellipse(footprint), position, within);
+    let ellipse = glint_ndf_transformed(glint_ndf_ellipse(footprint, settings.reach), position, within);
     let jacobian = abs(glint_ndf_determinant(normal));
     let local_s = glint_ndf_apply(normal, s);
     let detail = glint_ndf_detail(material, ellipse, settings);
@@ -45,9 +45,20 @@ fn glint_ndf_tiled(
     // A sub-region without end.
     let view =
         GlintNdfView(ellipse, within, vec4f(1.0, 0.0, 0.0, 1.0), 1.0, 1.0e20, vec2f(1.0), jacobian);
-    let sum = glint_ndf_view_sum(material, view, settings, detail, local_s);
-    if sum.share > 0.0 {
-        return sum;
+    var sum = GlintNdfSum(0.0, 0.0, 0.0);
+    if detail.level >= 0 {
+        sum = glint_ndf_tiles(material, view, settings, local_s, u32(detail.level));
     }
-    return glint_ndf_point(material, 0u, within, s);
+    if !(sum.share > 0.0) {
+        var at_point = detail.level >= 0;
+        for (var k = 0; k < 2; k++) {
+            sum = glint_ndf_boxes(material, view, local_s, detail.edge, at_point);
+            // None has a share: the place alone.
+            if sum.share > 0.0 {
+                break;
+            }
+            at_point = true;
+        }
+    }
+    return sum;
 }

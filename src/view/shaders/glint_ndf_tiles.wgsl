@@ -43,18 +43,49 @@ fn glint_ndf_row(material: GlintNdfMaterial, at: i32, weights: vec3f, inside: ve
     return weights.x * v.x + weights.y * v.y + weights.z * v.z;
 }
 
+// Of a tile in blocks, at p (in texels from its first one): each place of the splines has its three by three texels together, those
+// beyond the tile as zeros, so that one load has them all. A tile of w x h texels has (w + 2) (h + 2) blocks, by rows, from `first`
+// on; the block at (i, j) begins at texel (i - 2, j - 2).
+fn glint_ndf_block_density(first: u32, size: vec2i, p: vec2f) -> f32 {
+    let node = floor(p + 0.5);
+    let f = p - node;
+    let at = clamp(vec2i(node) + 1, vec2i(0), size + 1);
+    let rows = glint_ndf_block(first + u32(at.y * (size.x + 2) + at.x));
+    let low = (0.5 - f) * (0.5 - f);
+    let high = (0.5 + f) * (0.5 + f);
+    let middle = 1.5 - 2.0 * f * f;
+    let across = vec3f(low.x, middle.x, high.x);
+    let top = vec3f(f32(rows.x & 255u), f32((rows.x >> 8u) & 255u), f32(rows.x >> 16u));
+    let centre = vec3f(f32(rows.y & 255u), f32((rows.y >> 8u) & 255u), f32(rows.y >> 16u));
+    let bottom = vec3f(f32(rows.z & 255u), f32((rows.z >> 8u) & 255u), f32(rows.z >> 16u));
+    // Texels are squares of n / 255; both splines are halves of these weights.
+    return (low.y * dot(across, top * top) + middle.y * dot(across, centre * centre) + high.y * dot(across, bottom * bottom))
+        * (0.25 / 65025.0);
+}
+
 // Density of one tile at the example's projected normal `s`: quadratic splines over decoded texels (bilinear for the paper's
 // storage), 0 outside the box.
 fn glint_ndf_tile_density(material: GlintNdfMaterial, tile: u32, s: vec2f) -> f32 {
     if dot(s, s) > 1.0 {
         return 0.0;
     }
-    let place = bitcast<vec4f>(glint_ndf_record(material.tile_records + 2u * tile));
-    let texels = glint_ndf_record(material.tile_records + 2u * tile + 1u);
+    let at = material.tile_records + 2u * tile;
+    var place: vec4f;
+    var texels: vec4u;
+    if material.few_tiles == 1u {
+        place = bitcast<vec4f>(glint_ndf_record(at));
+        texels = glint_ndf_record(at + 1u);
+    } else {
+        place = bitcast<vec4f>(glint_ndf_tile(at));
+        texels = glint_ndf_tile(at + 1u);
+    }
     let size = vec2i(vec2u(texels.z & 0xffffu, texels.z >> 16u));
     let p = (s - place.xy) * place.zw;
     if !(all(p >= vec2f(-1.5)) && all(p <= vec2f(size) + 0.5)) {
         return 0.0;
+    }
+    if material.blocks == 1u {
+        return bitcast<f32>(texels.x) * glint_ndf_block_density(texels.w, size, p);
     }
     var first = vec2i(floor(p + 0.5)) - 1;
     var across = glint_ndf_spline(p.x);

@@ -121,96 +121,199 @@ fn glint_ndf_visible_tile(
     return sum;
 }
 
+// A walk over a level's tiles, row by row.
+struct GlintNdfWalk {
+    // The next tile.
+    row: GlintNdfSlot,
+    column: GlintNdfSlot,
+    // Where its row ends.
+    x1: f32,
+    // Whether there was one: its corners and index.
+    found: bool,
+    low: vec2f,
+    high: vec2f,
+    index: vec2u,
+}
+
+// What a walk keeps to: tiles of a level that the sub-region may show, in a box, and that the widened footprint reaches.
+struct GlintNdfRange {
+    level: vec4u,
+    low: vec2f,
+    high: vec2f,
+    // The ellipse's middle, and how it moves along x a step of y.
+    mean: vec2f,
+    lean: f32,
+    // The square of half the ellipse's width in its middle, and what that loses a square step of y.
+    width2: f32,
+    loss: f32,
+}
+
+fn glint_ndf_range(view: GlintNdfView, level: vec4u) -> GlintNdfRange {
+    let edge = f32(level.x);
+    let e = glint_ndf_widened(view.ellipse, edge);
+    let p = 1.0 / (e.major * e.major);
+    let q = 1.0 / (e.minor * e.minor);
+    let a = 1.0 / (e.axis.x * e.axis.x * p + e.axis.y * e.axis.y * q);
+    let b = e.axis.x * e.axis.y * (p - q);
+    let reach = glint_ndf_reach_y(e);
+    let shown = view.extent * (view.half + 0.5 * edge * view.scale) - 0.5 * edge;
+    var low = view.middle - shown;
+    var high = view.middle + shown;
+    low.y = max(low.y, e.mean.y - reach);
+    high.y = min(high.y, e.mean.y + reach);
+    return GlintNdfRange(level, low, high, e.mean, -b * a, e.reach * e.reach * a, (p * a) * (q * a));
+}
+
+// At the first tile of its row.
+fn glint_ndf_begin_row(material: GlintNdfMaterial, range: GlintNdfRange, walk: GlintNdfWalk) -> GlintNdfWalk {
+    let edge = f32(range.level.x);
+    let start = walk.row.period + f32(walk.row.index) * edge;
+    let y = 0.5 * (start + min(start + edge, walk.row.period + f32(material.size.y))) - range.mean.y;
+    let half2 = range.width2 - range.loss * y * y;
+    let half = sqrt(max(half2, 0.0));
+    let middle = range.mean.x + range.lean * y;
+    var begun = walk;
+    begun.column = glint_ndf_slot_at(max(middle - half, range.low.x), range.level.y, f32(material.size.x), edge);
+    // The ellipse may miss the row.
+    begun.x1 = select(-1.0e30, min(middle + half, range.high.x), half2 >= 0.0);
+    return begun;
+}
+
+// Steps on to the next tile that the sub-region shows.
+fn glint_ndf_next_tile(
+    material: GlintNdfMaterial,
+    view: GlintNdfView,
+    range: GlintNdfRange,
+    walk: GlintNdfWalk,
+) -> GlintNdfWalk {
+    let edge = f32(range.level.x);
+    let size = vec2f(material.size);
+    var next = walk;
+    next.found = false;
+    for (var i = 0; i < GLINT_NDF_MAX_STEPS; i++) {
+        let period = vec2f(next.column.period, next.row.period);
+        let index = vec2u(next.column.index, next.row.index);
+        let start = period + vec2f(index) * edge;
+        if !(start.y <= range.high.y) {
+            break;
+        }
+        let end = min(start + edge, period + size);
+        let d = abs(glint_ndf_apply(view.to_surface, 0.5 * (start + end) - view.middle));
+        let shows = view.half + 0.5 * max(end.x - start.x, end.y - start.y) * view.scale;
+        next.found = start.x <= next.x1 && all(d < vec2f(shows));
+        next.low = start;
+        next.high = end;
+        next.index = index;
+        next.column = glint_ndf_next_slot(next.column, range.level.y, size.x);
+        var ends = false;
+        if !(next.column.period + f32(next.column.index) * edge <= next.x1) {
+            next.row = glint_ndf_next_slot(next.row, range.level.z, size.y);
+            next = glint_ndf_begin_row(material, range, next);
+            ends = !(next.row.period + f32(next.row.index) * edge <= range.high.y);
+        }
+        if next.found || ends {
+            break;
+        }
+    }
+    return next;
+}
+
+// Tiles of a level.
 fn glint_ndf_tiles(
     material: GlintNdfMaterial,
     view: GlintNdfView,
     settings: GlintNdfSettings,
     s: vec2f,
     level: u32,
-    low: vec2f,
-    high: vec2f,
 ) -> GlintNdfSum {
     let record = glint_ndf_record(material.level_records + level);
-    let edge = f32(record.x);
-    let size = vec2f(material.size);
-    let widened = glint_ndf_widened(view.ellipse, edge);
-    let reach = glint_ndf_reach_y(widened);
-    let y0 = max(widened.mean.y - reach, low.y);
-    let y1 = min(widened.mean.y + reach, high.y);
+    let range = glint_ndf_range(view, record);
+    var walk: GlintNdfWalk;
+    walk.row = glint_ndf_slot_at(range.low.y, record.z, f32(material.size.y), f32(record.x));
+    walk = glint_ndf_begin_row(material, range, walk);
+    walk = glint_ndf_next_tile(material, view, range, walk);
     var sum = GlintNdfSum(0.0, 0.0, 0.0);
-    var row = glint_ndf_slot_at(y0, record.z, size.y, edge);
-    for (var j = 0; j < GLINT_NDF_MAX_STEPS; j++) {
-        let start_y = row.period + f32(row.index) * edge;
-        if !(start_y <= y1) {
+    // The walk is ahead of the sum: pixels in step have each found a tile, or none is left to any.
+    for (var i = 0; i < GLINT_NDF_MAX_STEPS * GLINT_NDF_MAX_STEPS; i++) {
+        if !walk.found {
             break;
         }
-        let end_y = min(start_y + edge, row.period + size.y);
-        let span = glint_ndf_span_x(widened, 0.5 * (start_y + end_y));
-        let x0 = max(span.x, low.x);
-        let x1 = min(span.y, high.x);
-        var column = glint_ndf_slot_at(x0, record.y, size.x, edge);
-        for (var i = 0; i < GLINT_NDF_MAX_STEPS; i++) {
-            if !(column.period + f32(column.index) * edge <= x1) {
-                break;
-            }
-            let period = vec2f(column.period, row.period);
-            let index = vec2u(column.index, row.index);
-            sum = glint_ndf_add(sum, glint_ndf_visible_tile(material, view, settings, s, level, period, index));
-            column = glint_ndf_next_slot(column, record.y, size.x);
+        if settings.splits == 0u {
+            let extent = walk.high - walk.low;
+            let centre = 0.5 * (walk.low + walk.high);
+            let edge = max(extent.x, extent.y);
+            let weight = extent.x * extent.y * glint_ndf_widened_gaussian(view.ellipse, edge, centre)
+                * glint_ndf_visible(view, centre, edge);
+            let tile = record.w + walk.index.y * record.y + walk.index.x;
+            sum.density += weight * view.jacobian * glint_ndf_tile_density(material, tile, s);
+            sum.share += weight;
+            sum.terms += select(0.0, 1.0, weight > 0.0);
+        } else {
+            let period = walk.low - vec2f(walk.index) * f32(record.x);
+            sum = glint_ndf_add(sum, glint_ndf_visible_tile(material, view, settings, s, level, period, walk.index));
         }
-        row = glint_ndf_next_slot(row, record.z, size.y);
+        walk = glint_ndf_next_tile(material, view, range, walk);
+        if !walk.found {
+            break;
+        }
     }
     return sum;
 }
 
-// Boxes of `edge`, each one lobe; those of a whole texel are the bilinear cells.
+// Boxes of `edge`, each one lobe; those of a whole texel are the bilinear cells. Or the footprint's centre alone, as one lobe of no
+// extent.
 fn glint_ndf_boxes(
     material: GlintNdfMaterial,
     view: GlintNdfView,
     s: vec2f,
-    edge: f32,
-    low: vec2f,
-    high: vec2f,
+    boxes: f32,
+    at_point: bool,
 ) -> GlintNdfSum {
+    let edge = select(boxes, 0.0, at_point);
+    // Box in example texels that holds the centres of all boxes that the sub-region may show.
+    let extent = view.extent * (view.half + 0.5 * edge * view.scale);
+    let low = view.middle - extent;
+    let high = view.middle + extent;
     let widened = glint_ndf_widened(view.ellipse, edge);
     let reach = glint_ndf_reach_y(widened);
-    let rows = glint_ndf_cells(-0.5, edge, max(widened.mean.y - reach, low.y), min(widened.mean.y + reach, high.y));
+    var rows = glint_ndf_cells(-0.5, boxes, max(widened.mean.y - reach, low.y), min(widened.mean.y + reach, high.y));
+    rows = select(rows, vec2i(0, 1), at_point);
     var sum = GlintNdfSum(0.0, 0.0, 0.0);
-    for (var j = rows.x; j < rows.y; j++) {
-        let y = glint_ndf_cell_centre(-0.5, edge, j);
+    var j = rows.x;
+    loop {
+        if j >= rows.y {
+            break;
+        }
+        let y = glint_ndf_cell_centre(-0.5, boxes, j);
         let span = glint_ndf_span_x(widened, y);
-        let columns = glint_ndf_cells(-0.5, edge, max(span.x, low.x), min(span.y, high.x));
-        for (var i = columns.x; i < columns.y; i++) {
-            let centre = vec2f(glint_ndf_cell_centre(-0.5, edge, i), y);
-            let weight = edge * edge * glint_ndf_gaussian(widened, centre) * glint_ndf_visible(view, centre, edge);
+        var columns = glint_ndf_cells(-0.5, boxes, max(span.x, low.x), min(span.y, high.x));
+        columns = select(columns, vec2i(0, 1), at_point);
+        var i = columns.x;
+        loop {
+            if i >= columns.y {
+                break;
+            }
+            let cell = vec2f(glint_ndf_cell_centre(-0.5, boxes, i), y);
+            let centre = select(cell, view.ellipse.mean, at_point);
+            var weight = boxes * boxes * glint_ndf_gaussian(widened, centre) * glint_ndf_visible(view, centre, boxes);
+            weight = select(weight, 1.0, at_point);
             if weight > 0.0 {
                 let gradient = glint_ndf_log_gradient(view.ellipse, centre);
                 sum.density += weight * view.jacobian * glint_ndf_lobe_density(material, centre, edge, gradient, s);
                 sum.share += weight;
                 sum.terms += 1.0;
             }
+            i += 1;
+            if i >= columns.y {
+                break;
+            }
+        }
+        j += 1;
+        if j >= rows.y {
+            break;
         }
     }
     return sum;
-}
-
-// What is visible of one placed example, in tiles or lobes.
-fn glint_ndf_view_sum(
-    material: GlintNdfMaterial,
-    view: GlintNdfView,
-    settings: GlintNdfSettings,
-    detail: GlintNdfDetail,
-    s: vec2f,
-) -> GlintNdfSum {
-    let edge = detail.edge;
-    // Box in example texels that holds the centres of all pieces that the sub-region may show.
-    let reach = view.extent * (view.half + 0.5 * edge * view.scale);
-    let low = view.middle - reach;
-    let high = view.middle + reach;
-    if detail.level < 0 {
-        return glint_ndf_boxes(material, view, s, edge, low, high);
-    }
-    return glint_ndf_tiles(material, view, settings, s, u32(detail.level), low + 0.5 * edge, high - 0.5 * edge);
 }
 
 // The example point `local` as one lobe of no extent, seen through a palette entry.

@@ -66,7 +66,7 @@ modules! {
     "glint_ndf_tiled" needs ["glint_ndf_view"];
     "glint_ndf_stochastic" needs ["glint_ndf_view"];
     "glint_ndf_maps" needs ["glint_ndf_tiled", "glint_ndf_stochastic"];
-    "bind_ndf_maps" needs ["glint_ndf_maps", "bind_loads"];
+    "bind_ndf_maps" needs ["glint_ndf_maps", "bind_loads", "bind_table"];
     "query_ndf_maps" needs ["bind_ndf_maps"];
     "glint_lobes" needs ["glint_footprint", "glint_erf"];
     "glint_lobes_levels" needs ["glint_lobes"];

@@ -11,8 +11,10 @@ struct NdfMapsQuery {
     lobe_sigmas: f32,
     max_terms: u32,
     splits: u32,
+    reach: f32,
     // Index of the material.
     layer: u32,
+    unused: u32,
 }
 
 struct NdfMapsAnswer {
@@ -34,7 +36,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let q = queries[id.x];
     let material = ndf_maps.layers[min(q.layer, 1u)].material;
-    let settings = GlintNdfSettings(q.tile_sigmas, q.lobe_sigmas, q.max_terms, q.splits);
+    let settings = GlintNdfSettings(q.tile_sigmas, q.lobe_sigmas, q.max_terms, q.splits, q.reach);
     let sum = glint_ndf_density(material, GlintFootprint(q.mean, q.xx, q.xy, q.yy), settings, q.s);
     answers[id.x] = NdfMapsAnswer(
         sum.density,

@@ -7,12 +7,38 @@
 const SHADE_NDF_SWAP: u32 = 1u;
 const SHADE_NDF_ACCURATE: u32 = 2u;
 
+// What is known of the data when the pipeline is made, so that it holds no code for what they do not need; by default all is read
+// from the data. Layers: 1 or 2, 0 for any.
+override NDF_MAPS_LAYERS: u32 = 0u;
+// Cells of the stochastic placement along an axis, 0 where materials are tiled; 0xffffffff for any.
+override NDF_MAPS_CELLS: u32 = 0xffffffffu;
+// Whether density is in blocks: 1 or 0, 2 for any.
+override NDF_MAPS_BLOCKS: u32 = 2u;
+// Whether tiles are among the records: 1 or 0, 2 for any.
+override NDF_MAPS_FEW_TILES: u32 = 2u;
+// Whether material.switches may have SHADE_NDF_ACCURATE.
+override NDF_MAPS_ACCURATE: bool = true;
+
 fn shade_ndf_settings() -> GlintNdfSettings {
-    if (material.switches & SHADE_NDF_ACCURATE) != 0u {
-        return GlintNdfSettings(1.0, 0.75, 128u, 1u);
+    if NDF_MAPS_ACCURATE && (material.switches & SHADE_NDF_ACCURATE) != 0u {
+        return GlintNdfSettings(1.0, 0.75, 128u, 1u, 2.8);
     }
-    // Tiles four times as large against the footprint: an eye sees no difference, and some ten tiles are enough.
-    return GlintNdfSettings(4.0, 1.0, 32u, 0u);
+    // Tiles four times as large against the footprint, and a narrower one: an eye sees no difference, and some five tiles are enough.
+    return GlintNdfSettings(4.0, 1.0, 32u, 0u, 2.0);
+}
+
+fn shade_ndf_material(layer: u32) -> GlintNdfMaterial {
+    var found = ndf_maps.layers[layer].material;
+    if NDF_MAPS_CELLS != 0xffffffffu {
+        found.cells = NDF_MAPS_CELLS;
+    }
+    if NDF_MAPS_BLOCKS != 2u {
+        found.blocks = NDF_MAPS_BLOCKS;
+    }
+    if NDF_MAPS_FEW_TILES != 2u {
+        found.few_tiles = NDF_MAPS_FEW_TILES;
+    }
+    return found;
 }
 
 fn shade_ndf_footprint(point: ViewPoint) -> GlintFootprint {
@@ -25,31 +51,29 @@ fn shade_ndf_footprint(point: ViewPoint) -> GlintFootprint {
 // Density at the half vector's projection s of one layer; the reference's at one place, else that of the footprint.
 fn shade_ndf_density(layer: u32, footprint: GlintFootprint, s: vec2f, reference: bool) -> f32 {
     if reference {
-        return glint_ndf_density_at_point(ndf_maps.layers[layer].material, footprint.mean, s);
+        return glint_ndf_density_at_point(shade_ndf_material(layer), footprint.mean, s);
     }
     // Most of a picture lies outside the highlight and is done with here.
-    if !glint_ndf_reaches(ndf_maps.layers[layer].material, s) {
+    if !glint_ndf_reaches(shade_ndf_material(layer), s) {
         return 0.0;
     }
-    return glint_ndf_density(ndf_maps.layers[layer].material, footprint, shade_ndf_settings(), s).density;
+    return glint_ndf_density(shade_ndf_material(layer), footprint, shade_ndf_settings(), s).density;
 }
 
 fn shade_ndf_brdf(point: ViewPoint, light: vec3f, footprint: GlintFootprint, reference: bool) -> vec3f {
     let half = glint_half_vector(point.view, light);
-    let layers = min(ndf_maps.count, 2u);
-    let swap = select(0u, material.switches & SHADE_NDF_SWAP, layers > 1u);
-    var densities: array<vec3f, 2>;
-    for (var layer = 0u; layer < layers; layer++) {
-        densities[layer] = vec3f(shade_ndf_density(layer ^ swap, footprint, half.xy, reference));
-    }
+    let layered = NDF_MAPS_LAYERS != 1u && ndf_maps.count > 1u;
+    let swap = select(0u, material.switches & SHADE_NDF_SWAP, layered);
     // A density over the disk of projected normals is one over normals by their projected area, which D is.
-    let base = glint_facet_brdf(densities[0], material.f0, point.view, light);
-    if layers < 2u {
+    let lower = vec3f(shade_ndf_density(swap, footprint, half.xy, reference));
+    let base = glint_facet_brdf(lower, material.f0, point.view, light);
+    if !layered {
         return base;
     }
+    let upper = vec3f(shade_ndf_density(1u - swap, footprint, half.xy, reference));
     let coat_f0 = vec3f(ndf_maps.coat_f0);
     let through = vec3f(1.0) - glint_fresnel(coat_f0, dot(point.view, half));
-    return base * through + glint_facet_brdf(densities[1], coat_f0, point.view, light);
+    return base * through + glint_facet_brdf(upper, coat_f0, point.view, light);
 }
 
 fn shade_reflect(point: ViewPoint, light: vec3f) -> vec3f {

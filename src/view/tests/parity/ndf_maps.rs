@@ -29,7 +29,9 @@ struct Query {
     lobe_sigmas: f32,
     max_terms: u32,
     splits: u32,
+    reach: f32,
     layer: u32,
+    unused: u32,
 }
 
 /// `NdfMapsAnswer`.
@@ -53,7 +55,9 @@ impl Query {
             lobe_sigmas: settings.lobe_sigmas,
             max_terms: settings.max_terms,
             splits: settings.splits,
+            reach: settings.reach,
             layer,
+            unused: 0,
         }
     }
 
@@ -65,17 +69,17 @@ impl Query {
     }
 
     fn settings(&self) -> EvalSettings {
-        let Query { tile_sigmas, lobe_sigmas, max_terms, splits, .. } = *self;
-        EvalSettings { tile_sigmas, lobe_sigmas, max_terms, splits }
+        let Query { tile_sigmas, lobe_sigmas, max_terms, splits, reach, .. } = *self;
+        EvalSettings { tile_sigmas, lobe_sigmas, max_terms, splits, reach }
     }
 }
 
-const PICTURE: EvalSettings = EvalSettings { tile_sigmas: 4.0, lobe_sigmas: 1.0, max_terms: 32, splits: 0 };
+const PICTURE: EvalSettings = EvalSettings { tile_sigmas: 4.0, lobe_sigmas: 1.0, max_terms: 32, splits: 0, reach: 2.0 };
 const SETTINGS: [EvalSettings; 4] = [
     PICTURE,
-    EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 1.0, max_terms: 64, splits: 0 },
-    EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 0.75, max_terms: 128, splits: 1 },
-    EvalSettings { tile_sigmas: 0.5, lobe_sigmas: 0.5, max_terms: 512, splits: 2 },
+    EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 1.0, max_terms: 64, splits: 0, reach: 2.8 },
+    EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 0.75, max_terms: 128, splits: 1, reach: 2.8 },
+    EvalSettings { tile_sigmas: 0.5, lobe_sigmas: 0.5, max_terms: 512, splits: 2, reach: 2.8 },
 ];
 
 /// A material with the map it was baked from.
