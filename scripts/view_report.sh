@@ -28,25 +28,30 @@ cat <<'HEAD'
 # Frame times: speed against error
 
 Written by `scripts/view_report.sh > docs/viewer-report.md` (arguments go to `glint-view --bench`, as in `--size 960x540 --frames 9`);
-do not edit. A wall fills the picture, from straight ahead (a pixel spans two texels of maps) and from 60° to the side, in the
-light that the method is made for. *ratio*: median time of the surface pass over that of the baseline, whose frames take turns with the method's.
-*error*: sum over pixels of the luminance's difference from the method's reference over the sum of the reference's; of single
-pixels, not of their distribution, so sparse glints weigh heavily, and the reference's own noise of 256 samples is in it. *instructions*:
-of the whole program as SPIR-V, all lights and both sides of branches.
+do not edit. A wall fills the picture, from straight ahead (a pixel spans two texels of maps; of a dictionary's cells, halfway
+between two levels of detail) and from 60° to the side, in the light that the method is made for.
+
+- *ratio*: median time of a frame, its passes over surface and display, over that of the baseline's, whose frames take turns with
+  the method's. *surface alone*: the same of the surface's pass.
+- *look-ups*: elements of tables and filtered texels that a pixel reads, counted by the program, mean over the picture.
+- *instructions*: of the whole program as SPIR-V, all lights, both sides of branches, and what constants leave out.
+- *error*: sum over pixels of the luminance's difference from the method's reference over the sum of the reference's; of single
+  pixels, not of their distribution, so sparse glints weigh heavily, and the reference's own noise of 256 samples is in it.
 
 What bounds each, a pixel:
 
 | method | loads and fetches | arithmetic |
 | --- | --- | --- |
 | smooth | none | an exponential |
-| dictionary | two 4-byte loads a cell, for all cells under the footprint on two levels | a cell: its hash, a sine and a cosine, an exponential |
-| NDF maps | a tile: nine texels in one 16-byte load, two 16-byte loads of its place; a sub-region: two 16-byte loads of noise, two of its transform, two of levels; one word of a mask outside the highlight | a tile: two splines; a box: four error functions |
-| lobes, surfaces | one 16-byte load a lobe, for all lobes under the footprint | a lobe: a 2 × 2 inverse, two exponentials |
+| dictionary | two 4-byte loads a cell, for all cells under the footprint on two levels | a cell: its hash, three rounds of integer products in a row; a rotation |
+| NDF maps | a tile: nine texels in one 16-byte load, two 16-byte loads of its place; a sub-region of random placement: two 16-byte loads of noise, two of its transform, two of levels; one word of a mask outside the highlight | a tile: two splines; a box: four error functions |
+| lobes, surfaces | two 4-byte loads a bilinear patch of the finest level, one 16-byte load a lobe of the others; surfaces: a patch's offset and paths of its seams besides | a lobe: a 2 × 2 inverse, two exponentials |
 | environment | smooth: a cube and a table; glints: one cube more for every four levels | four hashes with a polynomial each for a word; a word and a binomial draw for each level but one, and one word more |
 | area light | as plain LTC: one map (two with directions), two tables | a power and two roots more than plain LTC, once a lobe |
 
-A software adapter has no texture units, executes both sides of branches for several pixels at a time, and has no fixed costs of a
-frame beside the smooth baseline's arithmetic. So its ratios are of arithmetic, and do not stand for a GPU's.
+A software adapter has no texture units: a look-up is some hundred instructions there, and a fetch from a cube several hundred. It
+executes both sides of branches and the longest of eight pixels' loops for all of them, and has no fixed costs of a frame to divide by. What of
+a ratio is look-ups and divergence does not stand for a GPU; its counts do.
 
 HEAD
 # One table: the header of the first run and the rows of all.
