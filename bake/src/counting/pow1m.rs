@@ -87,7 +87,9 @@ pub fn one_minus_exp(math: &impl Elementary, x: f32) -> f32 {
 ///
 /// Terms go by pairs, which is a short chain of operations, and the first ones last, so that small p keep their digits.
 pub fn halvings(p: f32) -> f32 {
-    let p2 = p * p;
+    // Powers of less would be subnormal numbers, which take a processor long and add nothing.
+    let least = p.max(1e-9);
+    let p2 = least * least;
     let p4 = p2 * p2;
     let high = (0.388_968_86 - p * 0.293_648_58) + p2 * (1.814_452 - p * 2.446_571) + p4 * 2.079_099_2;
     p * ((1.442_695_1 + p * 0.721_337_2) + p2 * (0.481_428_2 + p * 0.350_293_87) + p4 * high)

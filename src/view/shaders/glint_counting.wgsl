@@ -90,7 +90,9 @@ fn glint_normal_upper_quantile(u: vec4f) -> vec4f {
 
 // -log2(1 - p) of p <= 1/2, to a few units in the last place.
 fn glint_halvings(p: vec4f) -> vec4f {
-    let p2 = p * p;
+    // Powers of less would be subnormal numbers, which take some processors long and add nothing.
+    let least = max(p, vec4f(1.0e-9));
+    let p2 = least * least;
     let p4 = p2 * p2;
     let high = (0.38896886 - p * 0.29364858) + p2 * (1.814452 - p * 2.446571) + p4 * 2.0790992;
     // The first terms last, so that small p keep their digits.
