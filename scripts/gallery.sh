@@ -74,5 +74,12 @@ for sky in dancing_hall studio_small_03 st_peters_square_night; do
     }
     row=$((row + 1))
 done
-montage "$work"/[a-e]?.png -tile 3x -geometry 320x200+2+2 -background '#181818' -colors 255 PNG8:"$out/methods.png"
-montage "$work"/[f-j]?.png -tile 3x -geometry 320x200+2+2 -background '#181818' -colors 255 PNG8:"$out/environments.png"
+# sheet NAME PICTURE...: colours chosen by how they look, or dark surfaces turn green.
+sheet() {
+    name="$1"
+    shift
+    montage "$@" -tile 3x -geometry 320x200+2+2 -background '#181818' miff:- |
+        convert - -quantize sRGB -colors 255 PNG8:"$out/$name.png"
+}
+sheet methods "$work"/[a-e]?.png
+sheet environments "$work"/[f-j]?.png
