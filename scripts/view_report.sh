@@ -49,7 +49,7 @@ What bounds each, a pixel:
 | environment | smooth: a cube and a table; glints: one cube more for every four levels | four hashes with a polynomial each for a word; a word and a binomial draw for each level but one, and one word more |
 | area light | as plain LTC: one map (two with directions), two tables | a power and two roots more than plain LTC, once a lobe |
 
-A software adapter has no texture units: a look-up is some hundred instructions there, and a fetch from a cube several hundred. It
+A software adapter has no texture units: a look-up is many instructions there. It
 executes both sides of branches and the longest of eight pixels' loops for all of them, and has no fixed costs of a frame to divide by. What of
 a ratio is look-ups and divergence does not stand for a GPU; its counts do.
 

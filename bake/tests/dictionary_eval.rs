@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 use glint_bake_core::dictionary::cells::{cell_weight, level_window, max_cells, pixel_footprint, row_span};
 use glint_bake_core::dictionary::eval::{
-    GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, log1p_over_x, patch_sdf, smooth_sdf,
+    GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_rotation, log1p_over_x, patch_sdf, smooth_sdf,
 };
 use glint_bake_core::dictionary::hash::{CellState, cell_state, draw_bits, uniform_from_bits};
 use glint_bake_core::dictionary::{DictionaryOptions, bake, reference};
@@ -187,6 +187,19 @@ fn draws_are_uniform_below_one_and_unlike_those_of_neighbours_and_parents() {
             }
         }
     }
+}
+
+#[test]
+fn rotations_are_cosines_and_sines_of_an_eighth_of_a_turn_either_way() {
+    let mut worst = 0.0f64;
+    for k in 0..=100_000u64 {
+        let bits = (k * u64::from(u32::MAX) / 100_000) as u32;
+        let angle = (f64::from(bits >> 8) / 16_777_216.0 - 0.5) * std::f64::consts::FRAC_PI_2;
+        let turn = cell_rotation(bits).as_dvec2();
+        worst = worst.max((turn.x - libm::cos(angle)).abs()).max((turn.y - libm::sin(angle)).abs());
+    }
+    println!("worst: {worst:.2e}");
+    assert!(worst < 1.1e-5, "{worst}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //!
 //! Paper: section 6.1, Eq. 12, and algorithm 1, lines 3 to 7. The footprint is the ellipse of the two screen
 //! derivatives with weight exp(−2 r²) inside r = 1. Deviations:
-//! - The weight is (1 − r²)², within 0.03 of (exp(−2 r²) − exp(−2)) / (1 − exp(−2)): a cell enters and leaves with weight
+//! - The weight is (1 − r²)², within 0.04 of (exp(−2 r²) − exp(−2)) / (1 − exp(−2)): a cell enters and leaves with weight
 //!   zero, and slowly.
 //! - At each level the footprint is widened by a Gaussian of 0.4 cells (Heckbert's reconstruction filter). Every
 //!   footprint, of zero area too, then covers a cell centre, and magnified cells blend.

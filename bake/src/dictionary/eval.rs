@@ -190,7 +190,7 @@ pub fn cell_sdf(
     (glint_colour(tables, material, draw_bits(state, DRAW_COLOUR), level, query.q_dict) * sdf, 1.0)
 }
 
-/// Cosine and sine, within 1e-5, of the angle between −π/4 and π/4 that a random word stands for.
+/// Cosine and sine, within 1.1e-5, of the angle between −π/4 and π/4 that a random word stands for.
 pub fn cell_rotation(bits: u32) -> Vec2 {
     let angle = (bits >> 8) as f32 * (0.5 * PI / 16_777_216.0) - 0.25 * PI;
     let s = angle * angle;

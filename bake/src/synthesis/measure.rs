@@ -20,22 +20,11 @@ pub fn measure(surface: &Synthesis, sample: &NormalMap) -> MeasuredError {
 /// the larger of both axes, of at most 256 patches, evenly spread. Where neighbours in the sample are equal, or there are
 /// no seams, 0.
 pub fn seam_ratio(surface: &Synthesis, sample: &NormalMap) -> f64 {
-    let edge = surface.params.patch as i32;
     let (mut sum, mut pairs) = ([0.0; 2], [0u64; 2]);
-    for (column, row) in spread(surface) {
-        for y in row * edge..(row + 1) * edge {
-            for x in column * edge..(column + 1) * edge {
-                let here = surface.source(x, y);
-                for (axis, (dx, dy)) in [(1, 0), (0, 1)].into_iter().enumerate() {
-                    let there = surface.source(x + dx, y + dy);
-                    if !adjacent(surface, here, there, (dx as u32, dy as u32)) {
-                        sum[axis] += (normal(sample, here) - normal(sample, there)).length_squared();
-                        pairs[axis] += 1;
-                    }
-                }
-            }
-        }
-    }
+    across_seams(surface, |axis, here, there| {
+        sum[axis] += (normal(sample, here) - normal(sample, there)).length_squared();
+        pairs[axis] += 1;
+    });
     let inside = neighbour_mean_square(sample);
     let ratio = |axis: usize| {
         let none = pairs[axis] == 0 || inside[axis] == 0.0;
@@ -52,30 +41,40 @@ const END: f64 = 4.0;
 /// than [`END`] times the mean of neighbours in the sample, neither patch goes on as the other does. Where neighbours in
 /// the sample are equal, or there are no seams, 0.
 pub fn feature_ends(surface: &Synthesis, sample: &NormalMap) -> f64 {
-    let edge = surface.params.patch as i32;
     let inside = neighbour_mean_square(sample);
     let (mut ends, mut pairs) = (0u64, 0u64);
+    across_seams(surface, |axis, here, there| {
+        if inside[axis] == 0.0 {
+            return;
+        }
+        let (dx, dy) = if axis == 0 { (1, 0) } else { (0, 1) };
+        let beyond = sample.texel(i64::from(here.x) + dx, i64::from(here.y) + dy);
+        let before = sample.texel(i64::from(there.x) - dx, i64::from(there.y) - dy);
+        let on = (beyond - normal(sample, there)).length_squared();
+        let back = (before - normal(sample, here)).length_squared();
+        ends += u64::from(on.min(back) > END * inside[axis]);
+        pairs += 1;
+    });
+    1000.0 * ends as f64 / pairs.max(1) as f64
+}
+
+/// Visits neighbours across the seams of at most [`MAX_MEASURED`] patches: the axis along which they lie (0 right, 1 below),
+/// and where in the sample both are from.
+fn across_seams(surface: &Synthesis, mut visit: impl FnMut(usize, Source, Source)) {
+    let edge = surface.params.patch as i32;
     for (column, row) in spread(surface) {
         for y in row * edge..(row + 1) * edge {
             for x in column * edge..(column + 1) * edge {
                 let here = surface.source(x, y);
                 for (axis, (dx, dy)) in [(1, 0), (0, 1)].into_iter().enumerate() {
                     let there = surface.source(x + dx, y + dy);
-                    if inside[axis] == 0.0 || adjacent(surface, here, there, (dx as u32, dy as u32)) {
-                        continue;
+                    if !adjacent(surface, here, there, (dx as u32, dy as u32)) {
+                        visit(axis, here, there);
                     }
-                    let (dx, dy) = (i64::from(dx), i64::from(dy));
-                    let beyond = sample.texel(i64::from(here.x) + dx, i64::from(here.y) + dy);
-                    let before = sample.texel(i64::from(there.x) - dx, i64::from(there.y) - dy);
-                    let on = (beyond - normal(sample, there)).length_squared();
-                    let back = (before - normal(sample, here)).length_squared();
-                    ends += u64::from(on.min(back) > END * inside[axis]);
-                    pairs += 1;
                 }
             }
         }
     }
-    1000.0 * ends as f64 / pairs.max(1) as f64
 }
 
 /// Columns and rows of at most [`MAX_MEASURED`] patches.

@@ -122,7 +122,7 @@ impl ResourceSet {
     /// Adds a table as a texture of [`TABLE_WIDTH`] columns, element i at column i mod `TABLE_WIDTH` of row i / `TABLE_WIDTH`:
     /// elements of four bytes as `R32Uint`, of sixteen as `Rgba32Uint`.
     ///
-    /// A GPU reads it as fast as a storage buffer; an adapter in software, which reads buffers one lane at a time, faster.
+    /// Whether an adapter in software reads this or a storage buffer faster depends on the program: to be measured.
     pub fn table(&mut self, gpu: &Gpu, format: wgpu::TextureFormat, contents: &[u8]) -> &mut Self {
         let row = TABLE_WIDTH as usize * format.block_copy_size(None).unwrap_or(4) as usize;
         let mut padded = contents.to_vec();

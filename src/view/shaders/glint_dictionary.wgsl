@@ -230,7 +230,7 @@ fn glint_facet_level(tables: GlintDictionaryTables, material: GlintDictionaryMat
     return 0.5 * log2(max(material.density, 1.0e-30)) - cells_above;
 }
 
-// Cosine and sine, within 1e-5, of the angle between -pi/4 and pi/4 that a random word stands for.
+// Cosine and sine, within 1.1e-5, of the angle between -pi/4 and pi/4 that a random word stands for.
 fn glint_cell_rotation(bits: u32) -> vec2f {
     let angle = f32(bits >> 8u) * (0.5 * GLINT_PI / 16777216.0) - 0.25 * GLINT_PI;
     let s = angle * angle;

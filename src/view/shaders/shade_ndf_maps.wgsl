@@ -23,7 +23,7 @@ fn shade_ndf_settings() -> GlintNdfSettings {
     if NDF_MAPS_ACCURATE && (material.switches & SHADE_NDF_ACCURATE) != 0u {
         return GlintNdfSettings(1.0, 0.75, 128u, 1u, 2.8);
     }
-    // Tiles four times as large against the footprint, and a narrower one: an eye sees no difference, and some five tiles are enough.
+    // Tiles four times as large against the footprint, and a narrower one: docs/viewer-report.md has the error.
     return GlintNdfSettings(4.0, 1.0, 32u, 0u, 2.0);
 }
 
