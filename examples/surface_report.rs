@@ -33,7 +33,7 @@ const SEED: u64 = 5;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let (mut data, mut footprints) = (None, 8);
+    let (mut data, mut footprints) = (None, 64);
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
         match argument.as_str() {

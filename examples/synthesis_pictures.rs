@@ -2,7 +2,7 @@
 //!
 //! `synthesis_pictures MAP FOLDER [KEY=VALUE]…` writes `FOLDER/NAME-all.png`, the surface made smaller to 1024 pixels, and
 //! `FOLDER/NAME-part.png`, some texels at full size; with `-` for a folder nothing. Keys: crop (256; 0 is the whole map),
-//! x, y, repeat (0: the crop does not), size (4096), colours (0; else corner tiles), variants, patch, overlap, alignment,
+//! x, y, reduce (1; the mean of so many texels a side is one), repeat (0: the crop does not), size (4096), colours (0; else corner tiles), variants, patch, overlap, alignment,
 //! tolerance, candidates, alpha, seed, part (512), name. MAP may be `synthetic:leather`, or brushed, scratches, flakes: a map of 512²
 //! texels made by formula.
 
@@ -71,7 +71,7 @@ fn run(path: &Path, folder: &str, settings: &Settings<'_>) -> Result<(), String>
     let wrap = if settings.number("repeat", 0)? == 1 { Wrap::Repeat } else { Wrap::Clamp };
     let input =
         InputOptions { crop: (crop > 0).then_some(Crop { x, y, w: crop, h: crop }), wrap, ..InputOptions::default() };
-    let sample = load_normal_map(path, &input).map_err(|e| e.to_string())?.map;
+    let sample = reduced(&load_normal_map(path, &input).map_err(|e| e.to_string())?.map, settings.number("reduce", 1)?);
     let size = settings.number("size", 4096u32)?;
     let target = match settings.number("colours", 0)? {
         0 => Target::Patches { width: size, height: size },
@@ -104,6 +104,19 @@ fn run(path: &Path, folder: &str, settings: &Settings<'_>) -> Result<(), String>
         write("part", picture(&surface, &sample, PART_AT, settings.number("part", 512)?, 1)?)?;
     }
     Ok(())
+}
+
+/// A map whose texels are the means of `by` × `by` texels; what is left over at its right and below is not used.
+fn reduced(map: &NormalMap, by: u32) -> NormalMap {
+    let by = by.max(1);
+    let (width, height) = (map.width / by, map.height / by);
+    let mean = |x: u32, y: u32| {
+        let texels = (0..by).flat_map(|j| (0..by).map(move |i| ((y * by + j) * map.width + x * by + i) as usize));
+        let [sx, sy] = texels.fold([0.0; 2], |sum, at| [sum[0] + map.projected[at][0], sum[1] + map.projected[at][1]]);
+        [sx / (by * by) as f32, sy / (by * by) as f32]
+    };
+    let projected = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(x, y)).collect();
+    NormalMap { width, height, wrap: map.wrap, projected }
 }
 
 /// Name, CPU-seconds, bytes, seams, ends of features in a thousand neighbours across seams, distinct offsets; shares of blocks

@@ -7,7 +7,7 @@ use glam::DVec2;
 use glint_bake_core::lobes::eval::Frame;
 use glint_bake_core::lobes::options::LobesOptions;
 use glint_bake_core::lobes::quality::{Measured, footprint_errors};
-use glint_bake_core::lobes::query::QuerySettings;
+use glint_bake_core::lobes::query::{Detail, QuerySettings};
 use glint_bake_core::lobes::reference::Reference;
 use glint_bake_core::lobes::{BakedLobes, bake};
 use glint_bake_core::progress::Silent;
@@ -53,6 +53,12 @@ fn footprints_of_real_maps_are_within_their_error_and_far_ahead_of_k_means() {
             let allowed = most.min(0.5 * one.min(four));
             assert!(ours <= allowed, "{file}, σ {sigma}: {ours}, k-means {one} and {four}");
         }
+        // Nor is that the choice of levels alone: at the same cells of k lobes, the finest.
+        let places = sweep::footprints(2.0, 1.0, DVec2::splat(128.0), 8, 9);
+        let ways = [&ours, &paper[0], &paper[1]].map(|baked| (baked, Measured::At(Detail::Cells(0))));
+        let errors = footprint_errors(&reference, &ways, &places, 6);
+        let [ours, one, four] = [0, 1, 2].map(|k| errors[k].e1.mean);
+        assert!(ours <= 0.5 * one.min(four), "{file}, finest cells: {ours}, k-means {one} and {four}");
     }
 }
 

@@ -48,6 +48,17 @@ fn seams_are_as_rough_as_the_sample_and_nothing_repeats() {
 }
 
 #[test]
+fn a_map_that_repeats_does_not_on_its_surface() {
+    let Some(data) = data() else { return };
+    let sample = NormalMap { wrap: Wrap::Repeat, ..load(&data, "normals/carpaint_flakes_khronos_128.png", None) };
+    let surface = bake(&sample, &SynthesisOptions::default(), &Silent).unwrap();
+    let measured = surface.params.measured;
+    assert!(repetition(&surface, 64, 12) < 0.02, "{}", repetition(&surface, 64, 12));
+    assert!(measured.distinct_offsets > 200, "{measured:?}");
+    assert!(measured.seam_ratio < 1.05, "{measured:?}");
+}
+
+#[test]
 fn a_surface_without_end_is_nearly_as_good() {
     let Some(data) = data() else { return };
     for (name, roughest) in MAPS {

@@ -298,3 +298,19 @@ fn a_surface_is_told_from_another_sample() {
     assert!(matches!(wrong, Err(BakeError::BadInput(_))));
     assert!(matches!(assemble(&surface, &map, (0, 0), (0, 4)), Err(BakeError::BadOption(_))));
 }
+
+#[test]
+fn a_sample_that_repeats_is_not_laid_side_by_side() {
+    let map = noise(64, 48, Wrap::Repeat);
+    let surface = baked(&map, &patches(512, 512));
+    // It would fit without a seam: every patch goes on where its neighbour ends.
+    assert!(repetition(&surface, 32, 8) < 0.1, "{}", repetition(&surface, 32, 8));
+    assert!(surface.params.measured.distinct_offsets > 40, "{:?}", surface.params.measured);
+    let next = |[x, y]: [u16; 2], (dx, dy): (u16, u16)| [(x + dx) % 64, (y + dy) % 48];
+    let at = |column: usize, row: usize| surface.offsets[row % 32 * 32 + column % 32];
+    for (column, row) in (0..32).flat_map(|row| (0..32).map(move |column| (column, row))) {
+        let across = (0..3).all(|k| at(column + k + 1, row) == next(at(column + k, row), (16, 0)));
+        let down = (0..2).all(|k| at(column, row + k + 1) == next(at(column, row + k), (0, 16)));
+        assert!(!across && !down, "from patch ({column}, {row}) on the surface shows the sample as it is");
+    }
+}

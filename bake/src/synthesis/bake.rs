@@ -10,6 +10,7 @@ use super::cut_errors::CutErrors;
 use super::features::{Features, distance};
 use super::measure::measure;
 use super::options::{SynthesisOptions, Target};
+use super::runs::Runs;
 use super::seams::{cut, push_path};
 use super::strips::PairErrors;
 use super::tiles;
@@ -87,6 +88,7 @@ fn quilt(
         units: features.neighbour_distance(),
         tolerance: options.error_tolerance,
         radii: Radii::of(u64::from(sample_width) * u64::from(sample_height), options.patch),
+        runs: Runs::new(candidates, features.size(), features.wrap(), options.patch),
         seed: options.seed,
     };
     let placed = choice.run(progress);

@@ -11,10 +11,12 @@
 //!   without a seam;
 //! - of the candidates within tolerance the least used are preferred, so that the surface has the normals of the sample in
 //!   nearly the same shares;
-//! - patches that show much the same as one near by are left out ([`Radii`]), or the eye finds the repetition.
+//! - patches that show much the same as one near by are left out ([`Radii`]), or the eye finds the repetition; so are those
+//!   that would go on as the sample does for too long ([`Runs`]).
 
 use super::candidates::{Candidates, Likeness};
 use super::cut_errors::CutErrors;
+use super::runs::Runs;
 use super::strips::PairErrors;
 use crate::progress::Progress;
 use crate::rng::ItemRng;
@@ -88,6 +90,8 @@ pub struct Choice<'a> {
     pub tolerance: f64,
     /// What may not be near.
     pub radii: Radii,
+    /// What may not follow.
+    pub runs: Runs,
     /// Seed.
     pub seed: u64,
 }
@@ -191,7 +195,22 @@ impl Choice<'_> {
                 }
             }
         }
+        self.bar_runs(column, row, placed, &mut barred);
         barred
+    }
+
+    /// Bars candidates that would show the sample on and on.
+    fn bar_runs(&self, column: u32, row: u32, placed: &[u32], barred: &mut [bool]) {
+        let (columns, rows) = (self.columns, self.rows);
+        let patch = |column: u32, row: u32| placed.get((row * columns + column) as usize).copied();
+        // A row or column is a ring; past the place itself there is nothing more to see.
+        let left = |k: u32| (k < columns).then(|| patch((column + columns - k) % columns, row)).flatten();
+        let right = |k: u32| (k < columns).then(|| patch((column + k) % columns, row)).flatten();
+        let above = |k: u32| (k < rows).then(|| patch(column, (row + rows - k) % rows)).flatten();
+        let below = |k: u32| (k < rows).then(|| patch(column, (row + k) % rows)).flatten();
+        for candidate in self.runs.too_long(0, left, right).chain(self.runs.too_long(1, above, below)) {
+            barred[candidate] = true;
+        }
     }
 }
 

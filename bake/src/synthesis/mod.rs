@@ -1,7 +1,7 @@
 //! A large surface from patches of a small sample: Tan, Zhu, Xu, Meng, Wang, Yan, *Real-Time Microstructure Rendering with
 //! MIP-mapped Normal Map Samples*, 2022, section 5.1.1. `docs/METHODS.md` has the equations and what deviates.
 //!
-//! [`bake()`] chooses patches ([`candidates`], [`strips`], [`cut_errors`], [`choose`]) and cuts seams ([`seams`]) by the
+//! [`bake()`] chooses patches ([`candidates`], [`strips`], [`cut_errors`], [`runs`], [`choose`]) and cuts seams ([`seams`]) by the
 //! distance of [`features`]; [`mod@tiles`] does so for a surface without end. [`eval`] finds the sample texel, or the whole
 //! block, that the surface shows; [`mod@assemble`] is that for a whole piece. [`reference`](mod@reference) pastes patches
 //! into an image and tries every path, [`mod@measure`] tells what a surface is like, [`sections`] is it as a pack.
@@ -17,6 +17,7 @@ pub mod features;
 pub mod measure;
 pub mod options;
 pub mod reference;
+pub mod runs;
 pub mod seams;
 pub mod sections;
 pub mod strips;

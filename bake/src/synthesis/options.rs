@@ -166,7 +166,9 @@ impl SynthesisOptions {
         let bytes = self.table_bytes(sample);
         if bytes > MAX_TABLE_BYTES {
             return Err(BakeError::LimitExceeded(format!(
-                "a sample of {width}×{height} texels and up to {} candidates, with a patch of {} and an overlap of {}, take                  {bytes} bytes to compare, at most {MAX_TABLE_BYTES}; crop the sample, or ask for a smaller patch or overlap",
+                "a sample of {width}×{height} texels and up to {} candidates, with a patch of {} and an overlap of {}, take \
+                 {bytes} bytes to compare, at most {MAX_TABLE_BYTES}; crop the sample, or ask for a smaller patch or \
+                 overlap",
                 self.max_candidates, self.patch, self.overlap
             )));
         }
@@ -212,8 +214,12 @@ impl SynthesisOptions {
         let candidates = u64::from(self.max_candidates).min(along(sample.width) * along(sample.height));
         let strip = u64::from(self.overlap) * u64::from(self.patch + self.overlap) * FEATURE_BYTES;
         let features = u64::from(sample.width) * u64::from(sample.height) * FEATURE_BYTES;
-        // Two strips of a candidate are held at a time; a tile has four sides. A pair has two errors, two
-        // sums along cuts and a likeness.
-        features + candidates * strip * 4 + candidates * candidates * 17
+        // Strips of a candidate that are held at a time: of a grid its own and a neighbour's; a tile has four sides.
+        let strips = match self.target {
+            Target::Patches { .. } => 2,
+            Target::Unbounded { .. } => 4,
+        };
+        // A pair has two errors, two sums along cuts and a likeness.
+        features + candidates * strip * strips + candidates * candidates * 17
     }
 }

@@ -144,17 +144,37 @@ pub fn choose(
             errors.push(error);
             cuts.push(cut * (1.0 + CROWDING * f64::from(used[candidate]) / average));
         }
+        let goes_on = |first: usize, second: usize, axis: usize| {
+            let size = [sample.width, sample.height];
+            (0..2).all(|k| {
+                let moved = u32::from(offsets[first][k]) + if k == axis { options.patch } else { 0 };
+                let found = u32::from(offsets[second][k]);
+                if sample.wrap == Wrap::Repeat { moved % size[k] == found } else { moved == found }
+            })
+        };
+        // Patches in a row, the candidate's among them, each of which goes on where the one before ends.
+        let run = |candidate: usize, axis: usize| {
+            let [dx, dy] = [[1, 0], [0, 1]][axis];
+            let ring = i64::from([columns, rows][axis]);
+            let at = |k: i64| patch_at(column + dx * k, row + dy * k, candidate);
+            let joined = |k: i64| matches!((at(k), at(k + 1)), (Some(a), Some(b)) if goes_on(a, b, axis));
+            let after = (0..ring - 1).take_while(|&k| joined(k)).count();
+            let before = (0..ring - 1).take_while(|&k| joined(-k - 1)).count();
+            (1 + before + after) as u32
+        };
+        let longest = [sample.width, sample.height].map(|side| u32::max(side / options.patch, 2) - 1);
         let barred: Vec<bool> = (0..offsets.len())
             .map(|candidate| {
-                (0..placed.len()).any(|other| {
-                    let around = |d: i64, n: u32| d.rem_euclid(i64::from(n)).min((-d).rem_euclid(i64::from(n)));
-                    let dx = around(other as i64 % i64::from(columns) - column, columns);
-                    let dy = around(other as i64 / i64::from(columns) - row, rows);
-                    let apart = dx.max(dy);
-                    let shared = shared(sample, options.patch, offsets[candidate], offsets[placed[other]]);
-                    (apart <= i64::from(radii.alike) && shared > 0.5)
-                        || (apart <= i64::from(radii.nearly_equal) && shared > 0.75)
-                })
+                (0..2).any(|axis| run(candidate, axis) > longest[axis])
+                    || (0..placed.len()).any(|other| {
+                        let around = |d: i64, n: u32| d.rem_euclid(i64::from(n)).min((-d).rem_euclid(i64::from(n)));
+                        let dx = around(other as i64 % i64::from(columns) - column, columns);
+                        let dy = around(other as i64 / i64::from(columns) - row, rows);
+                        let apart = dx.max(dy);
+                        let shared = shared(sample, options.patch, offsets[candidate], offsets[placed[other]]);
+                        (apart <= i64::from(radii.alike) && shared > 0.5)
+                            || (apart <= i64::from(radii.nearly_equal) && shared > 0.75)
+                    })
             })
             .collect();
         let all_barred = barred.iter().all(|&b| b);
