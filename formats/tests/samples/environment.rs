@@ -1,0 +1,50 @@
+//! Sections of an environment.
+
+use glint_formats::Section;
+use glint_formats::environment::{self, EnvironmentParams};
+
+/// Faces of two texels and of one, three levels with colours.
+pub fn environment_params() -> EnvironmentParams {
+    EnvironmentParams {
+        face_size: 2,
+        kernel: environment::Kernel::Ndf,
+        storage: environment::Storage::F16,
+        roughness: vec![0.0, 1.0],
+        radiance_scale: 1.0,
+        levels: vec![0.0, 1.0, 4.0],
+        level_choice: environment::LevelChoice::Optimal,
+        coloured: true,
+        albedo_size: 2,
+        source_width: 8,
+        source_height: 4,
+        negative_pixels: 1,
+        mean_radiance: [1.0, 0.5, 0.25],
+        max_error: 0.005,
+        measured: environment::MeasuredError {
+            mips: vec![environment::MeasuredMip { rmse: 0.001, worst: 0.002 }; 2],
+            texels: 16,
+            energy: 1e-6,
+            second_moment: 0.1,
+            rounding: vec![2e-4; 2],
+        },
+    }
+}
+
+/// Half floats of the indicators of [`environment_params`]: thirty texels, all ½, ¼, 0, 0.
+pub fn environment_indicators() -> Vec<u16> {
+    [0x3800, 0x3400, 0, 0].repeat(30)
+}
+
+/// The five sections of an environment whose radiance and albedo are all `value`.
+pub fn environment_sections(params: &EnvironmentParams, indicators: &[u16], value: u16) -> Vec<Section> {
+    let sound = environment_params();
+    let halves = |count: usize| bytemuck::cast_slice(&vec![value; count]).to_vec();
+    let texture = |kind, resource, payload| Section::texture(kind, "sky", resource, payload);
+    vec![
+        Section::parameters(environment::PARAMS, "sky", params),
+        texture(environment::RADIANCE, sound.radiance_resource(), halves(120)),
+        texture(environment::INDICATORS, sound.indicators_resource(), bytemuck::cast_slice(indicators).to_vec()),
+        texture(environment::COLOURS, sound.colours_resource(), vec![0x80; 240]),
+        texture(environment::ALBEDO, sound.albedo_resource(), bytemuck::cast_slice(&[0x3800u16; 16]).to_vec()),
+    ]
+}
