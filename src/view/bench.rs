@@ -114,6 +114,10 @@ pub struct BenchRow {
     pub surface_ratio: f64,
     /// Look-ups of the method's data a pixel, mean over the picture.
     pub loads: f64,
+    /// Arithmetic operations a pixel, mean over the picture.
+    pub operations: f64,
+    /// The same of what its time is compared with.
+    pub baseline_operations: f64,
     /// Instructions of the method's program as SPIR-V, all its lights and both sides of its branches.
     pub instructions: usize,
     /// Sum over pixels of the luminance's absolute difference from the reference over the sum of the reference's.
@@ -148,7 +152,9 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
         surface: median(times.iter().map(|time| time.surface).collect()),
         frame: median(times.iter().map(|time| time.frame).collect()),
     });
-    let loads = mean_loads(gpu, renderer, &small(false))?;
+    let loads = mean_count(gpu, renderer, &small(false), Overlay::Loads)?;
+    let mut operations = |shown| mean_count(gpu, renderer, &of(&setup.small, shown, false), Overlay::Operations);
+    let (operations, baseline_operations) = (operations(shown)?, operations(&setup.baseline)?);
     let source = glint_shaders::program(shown.method.name(), &shown.files);
     let instructions = glint_shaders::translate::spirv_instructions(&source).map_err(GpuError::Failed)?;
     // Glints under an environment have no reference but their mean over seeds.
@@ -167,6 +173,8 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
         frame_ratio: own.frame / base.frame,
         surface_ratio: own.surface / base.surface,
         loads,
+        operations,
+        baseline_operations,
         instructions,
         error,
     })
@@ -188,10 +196,10 @@ fn frame_seconds(gpu: &Gpu, renderer: &mut Renderer, view: &View) -> Result<Fram
     Ok(FrameSeconds { surface, frame })
 }
 
-/// Look-ups of the method's data a pixel, counted by the program itself.
-fn mean_loads(gpu: &Gpu, renderer: &mut Renderer, view: &View) -> Result<f64, GpuError> {
+/// Look-ups of the method's data, or operations, a pixel, counted by the program itself.
+fn mean_count(gpu: &Gpu, renderer: &mut Renderer, view: &View, overlay: Overlay) -> Result<f64, GpuError> {
     let mut view = view.clone();
-    view.display.overlay = Overlay::Loads;
+    view.display.overlay = overlay;
     picture(gpu, renderer, &view, 1)?;
     let pixels = renderer.radiance(gpu, &view, 0)?;
     let sum: f64 = pixels.iter().map(|pixel| f64::from(pixel[3]).exp2() - 1.0).sum();
@@ -228,12 +236,12 @@ fn median(mut values: Vec<f64>) -> f64 {
 /// The rows as a Markdown table.
 pub fn table(rows: &[BenchRow]) -> String {
     let mut text = String::from(
-        "| method | material | seen from | ms a frame | over | ratio | surface alone | look-ups | instructions | error |\n| --- | --- | --- | ---: | --- | ---: | ---: | ---: | ---: | ---: |\n",
+        "| method | material | seen from | ms a frame | over | ratio | surface alone | look-ups | operations | instructions | error |\n| --- | --- | --- | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n",
     );
     for row in rows {
         let error = row.error.map_or("".to_owned(), |error| format!("{:.1} %", 100.0 * error));
         text.push_str(&format!(
-            "| {} | {} | {} | {:.1} | {} | {:.2} | {:.2} | {:.1} | {} | {error} |\n",
+            "| {} | {} | {} | {:.1} | {} | {:.2} | {:.2} | {:.1} | {:.0} of {:.0} | {} | {error} |\n",
             row.method,
             row.name,
             row.view,
@@ -242,6 +250,8 @@ pub fn table(rows: &[BenchRow]) -> String {
             row.frame_ratio,
             row.surface_ratio,
             row.loads,
+            row.operations,
+            row.baseline_operations,
             row.instructions
         ));
     }

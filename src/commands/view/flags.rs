@@ -183,6 +183,8 @@ pub enum OverlayKind {
     Lod,
     /// Look-ups of the method's data a pixel
     Loads,
+    /// Arithmetic operations a pixel
+    Operations,
 }
 
 /// Tone mapping.

@@ -209,6 +209,7 @@ fn settings(args: &Args, list: &[Shown], camera: Orbit, placement: Option<Placem
         OverlayKind::Footprint => Overlay::Footprint,
         OverlayKind::Lod => Overlay::Lod,
         OverlayKind::Loads => Overlay::Loads,
+        OverlayKind::Operations => Overlay::Operations,
     };
     settings.tone = match args.view.tone {
         Tone::Filmic => ToneMapping::Filmic,

@@ -1,5 +1,6 @@
 //! The adapter and its device: WebGPU's baseline limits, and the few features that are used where they are there.
 
+use std::borrow::Cow;
 use std::sync::{Arc, Mutex};
 
 /// Why there is no device.
@@ -124,12 +125,21 @@ impl Gpu {
 
     /// A shader module, or what its compiler says.
     pub fn shader(&self, label: &str, source: &str) -> Result<wgpu::ShaderModule, GpuError> {
-        self.checked(label, || {
-            self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(label),
-                source: wgpu::ShaderSource::Wgsl(source.into()),
-            })
-        })
+        self.module(label, wgpu::ShaderSource::Wgsl(source.into()))
+    }
+
+    /// A shader module that counts the operations it executes.
+    ///
+    /// # Errors
+    /// [`GpuError::Failed`] with what is wrong with the text.
+    pub fn counting_shader(&self, label: &str, source: &str) -> Result<wgpu::ShaderModule, GpuError> {
+        let module = glint_shaders::operations::counted(source).map_err(GpuError::Failed)?;
+        self.module(label, wgpu::ShaderSource::Naga(Cow::Owned(module)))
+    }
+
+    fn module(&self, label: &str, source: wgpu::ShaderSource<'_>) -> Result<wgpu::ShaderModule, GpuError> {
+        let descriptor = wgpu::ShaderModuleDescriptor { label: Some(label), source };
+        self.checked(label, || self.device.create_shader_module(descriptor))
     }
 
     /// Runs `make` and turns what the device finds wrong with it into an error.

@@ -1,5 +1,6 @@
 //! Pipelines that draw a mesh by a method, made when they are first needed.
 
+use super::present::Overlay;
 use super::shown::Method;
 use super::targets::{DEPTH, RADIANCE};
 use crate::gpu::{Gpu, GpuError, ResourceSet, Resources};
@@ -20,10 +21,10 @@ pub(super) struct Key {
     pub constants: Vec<(&'static str, u64)>,
 }
 
-/// Pipelines by what they are specialised for, and the shader modules of the methods.
+/// Pipelines by what they are specialised for, and the shader modules of the methods, as they are or counting operations.
 #[derive(Debug, Default)]
 pub(super) struct Pipelines {
-    modules: HashMap<(Method, Vec<&'static str>), wgpu::ShaderModule>,
+    modules: HashMap<(Method, Vec<&'static str>, bool), wgpu::ShaderModule>,
     pipelines: HashMap<Key, wgpu::RenderPipeline>,
     backgrounds: HashMap<u32, wgpu::RenderPipeline>,
 }
@@ -39,10 +40,12 @@ impl Pipelines {
         environment: &Resources,
     ) -> Result<&wgpu::RenderPipeline, GpuError> {
         if !self.pipelines.contains_key(&key) {
-            let program = (key.method, key.files.clone());
+            let counts = key.overlay == Overlay::Operations.number();
+            let program = (key.method, key.files.clone(), counts);
             if !self.modules.contains_key(&program) {
                 let name = key.method.name();
-                let module = gpu.shader(name, &glint_shaders::program(name, &key.files))?;
+                let source = glint_shaders::program(name, &key.files);
+                let module = if counts { gpu.counting_shader(name, &source)? } else { gpu.shader(name, &source)? };
                 self.modules.insert(program.clone(), module);
             }
             let groups = [scene, &data.layout, &environment.layout];

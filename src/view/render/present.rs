@@ -26,6 +26,8 @@ pub enum Overlay {
     Lod,
     /// Look-ups of the method's data, log₂(1 + how many): 0 blue to 10 red.
     Loads,
+    /// Arithmetic operations that a pixel executes ([`glint_shaders::operations`]), log₂(1 + how many): 0 blue to 16 red.
+    Operations,
 }
 
 impl Overlay {
@@ -36,6 +38,7 @@ impl Overlay {
             Overlay::Footprint => 1,
             Overlay::Lod => 2,
             Overlay::Loads => 3,
+            Overlay::Operations => 4,
         }
     }
 
@@ -45,6 +48,7 @@ impl Overlay {
             Overlay::None => [0.0, 1.0],
             Overlay::Footprint => [-3.0, 6.0],
             Overlay::Lod | Overlay::Loads => [0.0, 10.0],
+            Overlay::Operations => [0.0, 16.0],
         }
     }
 }

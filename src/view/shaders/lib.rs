@@ -11,6 +11,7 @@
 //!
 //! Order of declarations does not matter in WGSL, so a program is its files one after the other ([`compose`]).
 
+pub mod operations;
 pub mod translate;
 
 /// A WGSL file.

@@ -3,6 +3,7 @@
 const VIEW_OVERLAY_FOOTPRINT: u32 = 1u;
 const VIEW_OVERLAY_LOD: u32 = 2u;
 const VIEW_OVERLAY_LOADS: u32 = 3u;
+const VIEW_OVERLAY_OPERATIONS: u32 = 4u;
 
 // Lights that are on, as a sum of the above.
 override LIGHTS: u32 = 1u;
@@ -99,6 +100,9 @@ fn fragment(f: ViewFragment, @builtin(front_facing) front: bool) -> @location(0)
     }
     if OVERLAY == VIEW_OVERLAY_LOADS {
         overlay = log2(1.0 + f32(bound_loads));
+    }
+    if OVERLAY == VIEW_OVERLAY_OPERATIONS {
+        overlay = log2(1.0 + f32(bound_operations));
     }
     return vec4f(radiance, overlay);
 }

@@ -217,8 +217,8 @@ fn it_opens_takes_clicks_keys_and_the_mouse_and_closes_on_escape() {
     assert!(count(&dictionary, &session.screen(), scene) > 50);
     session.key("o");
     session.changed("false colours", &smooth, scene);
-    // Level of detail, look-ups, none.
-    for _ in 0..3 {
+    // Level of detail, look-ups, operations, none.
+    for _ in 0..4 {
         session.key("o");
     }
     session.becomes("the picture without false colours", &smooth, scene);

@@ -155,7 +155,8 @@ impl Controls {
                     Overlay::None => Overlay::Footprint,
                     Overlay::Footprint => Overlay::Lod,
                     Overlay::Lod => Overlay::Loads,
-                    Overlay::Loads => Overlay::None,
+                    Overlay::Loads => Overlay::Operations,
+                    Overlay::Operations => Overlay::None,
                 }
             }
             Press::Hide => self.panel = !self.panel,
@@ -230,7 +231,7 @@ mod tests {
         assert_eq!(settings.shown, 2, "there is no ninth method");
         press(c, &mut settings, "r");
         assert!(settings.reference);
-        for overlay in [Overlay::Footprint, Overlay::Lod, Overlay::Loads, Overlay::None] {
+        for overlay in [Overlay::Footprint, Overlay::Lod, Overlay::Loads, Overlay::Operations, Overlay::None] {
             press(c, &mut settings, "o");
             assert_eq!(settings.overlay, overlay);
         }

@@ -222,7 +222,7 @@ fn display(ui: &mut Ui, settings: &mut Settings) {
         ui.radio_value(&mut settings.tone, ToneMapping::Linear, "linear");
     });
     egui::ComboBox::from_label("overlay (O)").selected_text(overlay_name(settings.overlay)).show_ui(ui, |ui| {
-        for overlay in [Overlay::None, Overlay::Footprint, Overlay::Lod, Overlay::Loads] {
+        for overlay in [Overlay::None, Overlay::Footprint, Overlay::Lod, Overlay::Loads, Overlay::Operations] {
             ui.selectable_value(&mut settings.overlay, overlay, overlay_name(overlay));
         }
     });
@@ -238,6 +238,9 @@ fn display(ui: &mut Ui, settings: &mut Settings) {
         Overlay::Loads => {
             ui.label(format!("look-ups a pixel: {} blue to {} red", low.exp2() - 1.0, high.exp2() - 1.0));
         }
+        Overlay::Operations => {
+            ui.label(format!("operations a pixel: {} blue to {} red", low.exp2() - 1.0, high.exp2() - 1.0));
+        }
     }
     ui.checkbox(&mut settings.antialias, "smooth edges, mean over frames");
 }
@@ -248,6 +251,7 @@ fn overlay_name(overlay: Overlay) -> &'static str {
         Overlay::Footprint => "footprint",
         Overlay::Lod => "level of detail",
         Overlay::Loads => "look-ups",
+        Overlay::Operations => "operations",
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::adapter::gpu;
 use crate::subjects::{camera, mean_radiance, subjects, wall};
 use glam::Vec3;
-use glint_view::render::{Overlay, picture};
+use glint_view::render::{Method, Overlay, picture};
 
 #[test]
 fn every_method_gives_light_and_the_same_bytes_twice() {
@@ -38,9 +38,31 @@ fn hard_views_have_no_pixel_without_a_number() {
             view.scene.lights.sun.iter_mut().for_each(|sun| sun.direction = direction);
             mean_radiance(gpu, &mut renderer, &view, 1);
         }
-        for overlay in [Overlay::Footprint, Overlay::Lod, Overlay::Loads] {
+        for overlay in [Overlay::Footprint, Overlay::Lod, Overlay::Loads, Overlay::Operations] {
             view.display.overlay = overlay;
             mean_radiance(gpu, &mut renderer, &view, 1);
         }
+    }
+}
+
+#[test]
+fn a_glint_takes_more_operations_than_none() {
+    let Some(gpu) = gpu() else { return };
+    let subjects = subjects(gpu);
+    let operations: Vec<(Method, f64)> = (0..subjects.shown.len())
+        .map(|index| {
+            let (mesh, _, mut view) = wall(&subjects, index, [16, 12]);
+            view.display.overlay = Overlay::Operations;
+            let mut renderer = subjects.renderer(gpu, &mesh).unwrap();
+            picture(gpu, &mut renderer, &view, 1).unwrap();
+            let pixels = renderer.radiance(gpu, &view, 0).unwrap();
+            let sum: f64 = pixels.iter().map(|pixel| f64::from(pixel[3]).exp2() - 1.0).sum();
+            (subjects.shown[index].method, sum / pixels.len() as f64)
+        })
+        .collect();
+    let smooth = operations.iter().find(|(method, _)| *method == Method::Smooth).unwrap().1;
+    assert!(smooth > 50.0 && smooth < 1000.0, "{smooth}");
+    for (method, found) in operations.iter().filter(|(method, _)| method.baseline() == Some(Method::Smooth)) {
+        assert!(*found > 2.0 * smooth && *found < 1e6, "{method:?}: {found} against {smooth}");
     }
 }
