@@ -34,6 +34,8 @@ between two levels of detail) and from 60° to the side, in the light that the m
 - *ratio*: median time of a frame, its passes over surface and display, over that of the baseline's, whose frames take turns with
   the method's. *surface alone*: the same of the surface's pass.
 - *look-ups*: elements of tables and filtered texels that a pixel reads, counted by the program, mean over the picture.
+- *operations*: arithmetic that a pixel executes, and its baseline's, counted by the program likewise: sums, products, comparisons,
+  conversions as one for each component, divisions, roots, exponentials as four; sides of branches that are not taken count nothing.
 - *instructions*: of the whole program as SPIR-V, all lights, both sides of branches, and what constants leave out.
 - *error*: sum over pixels of the luminance's difference from the method's reference over the sum of the reference's; of single
   pixels, not of their distribution, so sparse glints weigh heavily, and the reference's own noise of 256 samples is in it.
