@@ -2,8 +2,8 @@
 //!
 //! The paper (algorithm 1, line 18) asks for the inverse of the normal distribution function and leaves its
 //! computation open. The form x · P(w), w = −log(4u(1 − u)), is that of Giles 2010, "Approximating the erfinv
-//! function". Here P is a quotient of two polynomials over the whole range, fitted to uniforms of 32 bits, and the logarithm is to the
-//! base 2 and that of the walk.
+//! function". Here P is one quotient of polynomials, fitted to uniforms of 32 bits, and the logarithm, to the base 2, is the
+//! polynomial that powers take: a shader that computes both finds them for the price of one.
 
 use super::pow1m::{digits, halvings};
 
@@ -13,8 +13,8 @@ pub fn unit_from_bits(bits: u32) -> f32 {
     ((bits as f32 + 0.5) * (1.0 / 4_294_967_296.0)).min(1.0 - f32::EPSILON / 2.0)
 }
 
-/// Numerator and denominator of z with P(Z > z) = u for a standard normal Z; z is off by at most 3e-5 for u from 2⁻³³ to ½, antisymmetric
-/// around ½. Both are positive multiples of 1 − 2u and 1.
+/// Numerator and positive denominator of z with P(Z > z) = u for a standard normal Z. z is off by at most 3e-5 for u from 2⁻³³
+/// to ½, and antisymmetric around ½.
 pub fn normal_upper_fraction(u: f32) -> [f32; 2] {
     let [whole, rest] = digits(4.0 * u * (1.0 - u));
     let y = whole + halvings(rest);

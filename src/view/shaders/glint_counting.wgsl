@@ -240,8 +240,8 @@ fn glint_many_hits(n: GlintCounts, p: vec4f, q: vec4f, u: vec4f, y: vec4f) -> Gl
     return GlintCounts(select(large.high, small, is_small), select(large.low, vec4f(0.0), is_small));
 }
 
-// Hits and misses of four lots of `n` trials with hit chance `p`, those of which that are `drawn`; they add up to `n`. Where both p and
-// q are 0, all hit.
+// Hits and misses of four lots of `n` trials with hit chance `p`; they add up to `n`. Where both p and q are 0, all hit. Lots that are
+// not `drawn` are anything.
 fn glint_whole_binomials(n: GlintCounts, p: vec4f, q: vec4f, bits: vec4u, drawn: vec4<bool>) -> GlintSplits {
     let swapped = p >= q;
     let rare = select(p, q, swapped);

@@ -65,7 +65,7 @@ fn glint_surface_bits(state: GlintCellState, index: u32) -> u32 {
 
 // Seed of a level's grid.
 fn glint_surface_seed(level: i32, seed: u32) -> u32 {
-    return seed * 0xa54ff53bu + bitcast<u32>(level) * 0x9e3779b9u;
+    return glint_mix_bits(seed + bitcast<u32>(level) * 0x9e3779b9u);
 }
 
 // The corners around `position` for a pixel of level `lod` (glint_surface_lod).
