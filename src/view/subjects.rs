@@ -126,10 +126,7 @@ impl Subjects {
             self.environment = Some(Rc::new(methods::environment::upload(gpu, &baked)));
             let material = Material { alpha: [0.25; 2], ..Material::default() };
             let shown = self.add(Method::Environment, name, &nothing(gpu), material);
-            shown.constants = vec![
-                ("ENVIRONMENT_LEVELS", baked.params.levels.len() as f64),
-                ("ENVIRONMENT_COLOURED", f64::from(u8::from(baked.params.coloured))),
-            ];
+            shown.constants = methods::environment::constants(&baked.params);
         }
         Ok(())
     }

@@ -16,7 +16,7 @@
 //! - Counts above 2²⁴ come with what rounding to f32 takes from them ([`Count`]), so that their variance holds to 1e16.
 
 use super::count::Count;
-use super::normal::{normal_upper_quantile, unit_from_bits};
+use super::normal::{normal_upper_fraction, unit_from_bits};
 use super::pow1m::{MOST_HALVINGS, halved, halvings};
 
 /// Largest expected count of the rarer outcome that is drawn exactly.
@@ -36,19 +36,23 @@ pub fn whole_count(n: f32, bits: u32) -> f32 {
 }
 
 /// Hits k with P(hits > k) ≤ u of n trials with p ≤ ½, q = 1 − p and np at most a few; exact up to [`WALK_STEPS`].
+///
+/// Both P(hits = k) and P(hits > k) − u are walked times k!, so that no step divides; 20! is far from the largest f32.
 pub fn few_hits(n: f32, p: f32, q: f32, u: f32) -> f32 {
-    let odds = p / q;
-    let [mut density, mut more] = halved((n * halvings(p)).min(MOST_HALVINGS));
+    // q is 0 besides p where nothing is drawn.
+    let odds = p / q.max(0.5);
+    let [mut density, lost] = halved((n * halvings(p)).min(MOST_HALVINGS));
+    let mut excess = lost - u;
     let mut k = 0.0;
     for _ in 0..WALK_STEPS {
-        if u >= more {
+        if excess <= 0.0 {
             break;
         }
-        density *= (n - k) * (odds / (k + 1.0));
-        more -= density;
+        density *= (n - k) * odds;
         k += 1.0;
+        excess = excess * k - density;
     }
-    // Rounding may leave a rest of `more` past the last trial.
+    // Rounding may leave a rest of excess past the last trial.
     k.min(n)
 }
 
@@ -69,11 +73,14 @@ pub fn many_hits(n: Count, p: f32, q: f32, u: f32) -> Count {
     // From np = 4e8 on, the rounding of np alone would show as a bias in ten million draws.
     let rest = product_rest(n.high, p, mean) + n.low * p;
     let sigma = ((mean + rest) * q).sqrt();
-    let z = normal_upper_quantile(u);
-    let skew = q - p;
+    let [over, under] = normal_upper_fraction(u);
+    // z / σ: one division for both.
+    let slope = over / (under * sigma);
+    let z = slope * sigma;
     let z2 = z * z;
-    let third = (1.0 - 6.0 * p * q) * (z2 - 3.0) * (1.0 / 24.0) - skew * skew * (2.0 * z2 - 5.0) * (1.0 / 36.0);
-    let spread = sigma * z + skew * (z2 - 1.0) * (1.0 / 6.0) + z * (third - 1.0 / 24.0) / sigma;
+    // (1 − 6pq)(z² − 3)/24 − γ²(2z² − 5)/36 − 1/24 times 72, with γ² = 1 − 4pq.
+    let third = p * q * (14.0 - 2.0 * z2) - (z2 + 2.0);
+    let spread = sigma * z + (q - p) * (z2 - 1.0) * (1.0 / 6.0) + slope * third * (1.0 / 72.0);
     if mean < WHOLE {
         return Count::from((mean + (rest + spread)).round_ties_even().clamp(0.0, n.value()));
     }
@@ -83,10 +90,10 @@ pub fn many_hits(n: Count, p: f32, q: f32, u: f32) -> Count {
 
 /// Hits and misses of `n` trials with hit chance `p`, from one random word; they add up to `n`.
 ///
-/// `n` ≥ 0 is at most 1e16, `p` and `q` = 1 − p are from 0 to 1 (to 1e-16). For equal `bits` the hits grow with
+/// `n` ≥ 0 is at most 1e16, `p` and `q` = 1 − p are from 0 to 1 (to 1e-16); where both are 0, all hit. For equal `bits` the hits grow with
 /// `p`, and exchanging p with q and `bits` with `!bits` exchanges the result.
 pub fn whole_binomial(n: Count, p: f32, q: f32, bits: u32) -> [Count; 2] {
-    let swapped = p > q;
+    let swapped = p >= q;
     let (rare, common) = if swapped { (q, p) } else { (p, q) };
     let u = unit_from_bits(if swapped { !bits } else { bits });
     let few = n.value() * rare <= FEW;

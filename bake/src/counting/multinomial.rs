@@ -12,6 +12,9 @@ use super::count::Count;
 /// Most levels of one draw.
 pub const MAX_LEVELS: usize = 16;
 
+/// Lighter nodes are taken as this heavy, which they fill in part: one over the weight must be a number.
+const LEAST_WEIGHT: f32 = 1e-37;
+
 /// Leaves of the tree that holds `levels` levels: the next power of two, at most [`MAX_LEVELS`].
 ///
 /// This is also how many random words [`multinomial`] reads.
@@ -44,12 +47,9 @@ pub fn multinomial(
     count[1] = whole_count(n, bits[0]).into();
     for node in 1..leaves {
         let (left, right) = (weight[2 * node], weight[2 * node + 1]);
-        // An empty right branch needs no draw, and division by an empty node would be undefined.
-        let split = if right > 0.0 && count[node].high > 0.0 {
-            whole_binomial(count[node], left / weight[node], right / weight[node], bits[node])
-        } else {
-            [count[node], Count::default()]
-        };
+        // A node without weight has chances of 0, of which all go left.
+        let share = 1.0 / weight[node].max(LEAST_WEIGHT);
+        let split = whole_binomial(count[node], left * share, right * share, bits[node]);
         count[2 * node] = split[0];
         count[2 * node + 1] = split[1];
     }

@@ -95,6 +95,14 @@ pub fn halvings(p: f32) -> f32 {
     p * ((1.442_695_1 + p * 0.721_337_2) + p2 * (0.481_428_2 + p * 0.350_293_87) + p4 * high)
 }
 
+/// Digits of x > 0: how often 1 is halved to less than 2x (less than 0 where it is doubled), and 1 − x times 2 to the power of that, which
+/// is at most ½. −log₂ x is the first and the [`halvings`] of the second.
+pub fn digits(x: f32) -> [f32; 2] {
+    let bits = x.to_bits();
+    let mantissa = f32::from_bits((bits & 0x007f_ffff) | 0x3f00_0000);
+    [126.0 - (bits >> 23) as f32, 1.0 - mantissa]
+}
+
 /// Most halvings whose power is a normal number.
 pub const MOST_HALVINGS: f32 = 125.0;
 

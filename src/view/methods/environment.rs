@@ -56,6 +56,36 @@ impl Cube {
     }
 }
 
+/// Radiances of levels as pipeline constants.
+const LEVELS: [&str; MAX_LEVELS] = [
+    "ENVIRONMENT_LEVEL_0",
+    "ENVIRONMENT_LEVEL_1",
+    "ENVIRONMENT_LEVEL_2",
+    "ENVIRONMENT_LEVEL_3",
+    "ENVIRONMENT_LEVEL_4",
+    "ENVIRONMENT_LEVEL_5",
+    "ENVIRONMENT_LEVEL_6",
+    "ENVIRONMENT_LEVEL_7",
+    "ENVIRONMENT_LEVEL_8",
+    "ENVIRONMENT_LEVEL_9",
+    "ENVIRONMENT_LEVEL_10",
+    "ENVIRONMENT_LEVEL_11",
+    "ENVIRONMENT_LEVEL_12",
+    "ENVIRONMENT_LEVEL_13",
+    "ENVIRONMENT_LEVEL_14",
+    "ENVIRONMENT_LEVEL_15",
+];
+
+/// Pipeline constants that follow from the data: what levels there are, so that programs load nothing of them.
+pub fn constants(params: &EnvironmentParams) -> Vec<(&'static str, f64)> {
+    let mut constants = vec![
+        ("ENVIRONMENT_LEVELS", params.levels.len() as f64),
+        ("ENVIRONMENT_COLOURED", f64::from(u8::from(params.coloured))),
+    ];
+    constants.extend(LEVELS.into_iter().zip(params.levels.iter().copied()));
+    constants
+}
+
 /// Uploads an environment for look-ups by a sampler.
 pub fn upload(gpu: &Gpu, environment: &Environment) -> Resources {
     upload_for(gpu, environment, LookUp::Sampler)

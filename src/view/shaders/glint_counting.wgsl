@@ -5,7 +5,7 @@
 // Cornish-Fisher expansion where many are.
 //
 // Nodes are drawn four at a time: their chains of dependent operations overlap, and they share the turns of a loop. Where there
-// are fewer, what is computed of the rest is dropped. Polynomials go by pairs of terms for the same reason.
+// are fewer, constants say so, and what is computed of the rest is dropped. Polynomials go by pairs of terms for the same reason.
 //
 // Pure functions, no accessors. Random words are uniform 32-bit numbers. N is any number from 0 to 1e16, p and q = 1 - p are from
 // 0 to 1. Compilers must not reassociate the differences of GlintCounts.
@@ -19,6 +19,9 @@ const GLINT_EXACT_COUNT: f32 = 16777216.0;
 const GLINT_WALK_STEPS: f32 = 20.0;
 // 2^-y is a normal number up to here.
 const GLINT_MOST_HALVINGS: f32 = 125.0;
+// The nodes that are drawn of four.
+const GLINT_ONE: vec4<bool> = vec4<bool>(true, false, false, false);
+const GLINT_TWO: vec4<bool> = vec4<bool>(true, true, false, false);
 
 // Whether counts above 2^24 carry what rounding to f32 takes from them. A program whose counts end up in a sum in f32, as a
 // radiance is, does not show it and may set this to false before it draws.
@@ -73,21 +76,6 @@ fn glint_unit_from_bits(bits: u32) -> f32 {
     return glint_units_from_bits(vec4u(bits, 0u, 0u, 0u)).x;
 }
 
-// z with P(Z > z) = u for a standard normal Z, to 3e-5.
-fn glint_normal_upper_quantile(u: vec4f) -> vec4f {
-    let x = 1.0 - 2.0 * u;
-    let w = -log(4.0 * u * (1.0 - u));
-    let c = w - 2.5;
-    let c2 = c * c;
-    let centre = (2.123313 + c * 0.34880218) + c2 * ((-5.9057454e-3 - c * 1.772403e-3)
-        + c2 * ((3.071955e-4 - c * 6.411285e-6) + c2 * (-4.487788e-6 + c * 5.037158e-7)));
-    let t = sqrt(w) - 3.4632419;
-    let t2 = t * t;
-    let tail = (4.6647286 + t * 1.424175) + t2 * ((4.9826747e-3 - t * 2.5789616e-3)
-        + t2 * ((1.6521519e-3 - t * 1.9210854e-3) + t2 * 8.503982e-4));
-    return x * select(tail, centre, w < vec4f(5.0));
-}
-
 // -log2(1 - p) of p <= 1/2, to a few units in the last place.
 fn glint_halvings(p: vec4f) -> vec4f {
     // Powers of less would be subnormal numbers, which take some processors long and add nothing.
@@ -97,6 +85,27 @@ fn glint_halvings(p: vec4f) -> vec4f {
     let high = (0.38896886 - p * 0.29364858) + p2 * (1.814452 - p * 2.446571) + p4 * 2.0790992;
     // The first terms last, so that small p keep their digits.
     return p * ((1.4426951 + p * 0.7213372) + p2 * (0.4814282 + p * 0.35029387) + p4 * high);
+}
+
+// Digits of positive numbers: how often 1 is halved to less than twice the number (less than 0 where it is doubled), and 1 less the
+// number times 2 to the power of that, which is at most 1/2. -log2 is the first and the halvings of the second.
+struct GlintDigits {
+    whole: vec4f,
+    rest: vec4f,
+}
+
+fn glint_digits(x: vec4f) -> GlintDigits {
+    let number = bitcast<vec4u>(x);
+    let mantissa = bitcast<vec4f>((number & vec4u(0x007fffffu)) | vec4u(0x3f000000u));
+    return GlintDigits(126.0 - vec4f(bitcast<vec4i>(number >> vec4u(23u))), 1.0 - mantissa);
+}
+
+// Numerator and denominator of z with P(Z > z) = u for a standard normal Z, to 3e-5, from y = -log2(4 u (1 - u)).
+fn glint_normal_upper_fraction(u: vec4f, y: vec4f) -> array<vec4f, 2> {
+    let y2 = y * y;
+    let over = (1.2532073 + y * 0.28291672) + y2 * ((0.035295784 + y * 2.842739e-3) - y2 * 2.6916674e-5);
+    let under = (1.0 + y * 0.04391194) + y2 * ((0.014345539 + y * 6.4092455e-5) - y2 * 1.8229288e-6);
+    return array<vec4f, 2>((1.0 - 2.0 * u) * over, under);
 }
 
 struct GlintHalved {
@@ -109,7 +118,8 @@ fn glint_halved(y: vec4f) -> GlintHalved {
     let whole = floor(y);
     let f = y - whole;
     let f2 = f * f;
-    let scale = bitcast<vec4f>((vec4i(127) - vec4i(whole)) << vec4u(23u));
+    // 2^-whole: above 2^23 the bits of an f32 are those of the whole number, and all but the exponent's shift out.
+    let scale = bitcast<vec4f>(0x3f800000u - (bitcast<vec4u>(whole + GLINT_WHOLE) << vec4u(23u)));
     let high = (0.055498955 - f * 9.596278e-3) + f2 * (1.2907811e-3 - f * 1.1458065e-4);
     let series = (0.6931472 - f * 0.24022606) + f2 * high;
     let lost = f * scale * series;
@@ -147,24 +157,53 @@ fn glint_whole_count(n: f32, bits: u32) -> f32 {
     return select(whole, whole + 1.0, glint_unit_from_bits(bits) < positive - whole);
 }
 
-// Hits k with P(hits > k) <= u of n trials with p <= 1/2, q = 1 - p and np at most a few.
-fn glint_few_hits(n: vec4f, p: vec4f, q: vec4f, u: vec4f) -> vec4f {
-    let odds = p / q;
-    let none = glint_halved(min(n * glint_halvings(p), vec4f(GLINT_MOST_HALVINGS)));
-    var density = none.left;
-    var more = none.lost;
-    var hits = vec4f(0.0);
-    // Every node takes as many steps as the last of the four.
-    for (var k = 0.0; k < GLINT_WALK_STEPS; k += 1.0) {
-        let further = u < more;
-        if !any(further) {
+// A walk along numbers of hits, up to the first of which more hits are not as likely as the uniform number says. `density` is the
+// chance of as many hits as steps, `excess` that of more hits less the uniform number, both times the factorial of the steps, so that
+// no step divides; 20! is far from the largest f32.
+struct GlintWalk {
+    density: f32,
+    excess: f32,
+    hits: f32,
+}
+
+// From step k to k + 1, with `left` = n - k.
+fn glint_walk_step(walk: GlintWalk, left: f32, odds: f32, k: f32) -> GlintWalk {
+    let hits = walk.hits + select(0.0, 1.0, walk.excess > 0.0);
+    let density = walk.density * (left * odds);
+    return GlintWalk(density, walk.excess * (k + 1.0) - density, hits);
+}
+
+// Four of them: a turn of a loop costs some devices more than a step.
+fn glint_walk_steps(walk: GlintWalk, left: f32, odds: f32, k: f32) -> GlintWalk {
+    let one = glint_walk_step(walk, left, odds, k);
+    let two = glint_walk_step(one, left - 1.0, odds, k + 1.0);
+    let three = glint_walk_step(two, left - 2.0, odds, k + 2.0);
+    return glint_walk_step(three, left - 3.0, odds, k + 3.0);
+}
+
+// Hits k with P(hits > k) <= u of n trials with p <= 1/2, q = 1 - p, (1 - p)^n = 2^-y and np at most a few, of the nodes that are
+// `walked`; 0 of the others.
+fn glint_few_hits(n: vec4f, p: vec4f, q: vec4f, u: vec4f, y: vec4f, walked: vec4<bool>) -> vec4f {
+    // q is 0 besides p where nothing is drawn.
+    let odds = p / max(q, vec4f(0.5));
+    let none = glint_halved(min(y, vec4f(GLINT_MOST_HALVINGS)));
+    let excess = select(vec4f(-1.0), none.lost - u, walked);
+    var a = GlintWalk(none.left.x, excess.x, 0.0);
+    var b = GlintWalk(none.left.y, excess.y, 0.0);
+    var c = GlintWalk(none.left.z, excess.z, 0.0);
+    var d = GlintWalk(none.left.w, excess.w, 0.0);
+    // Every node takes as many steps as the last of the four. The test is at the end: some devices run what follows it once more.
+    for (var k = 0.0; k < GLINT_WALK_STEPS; k += 4.0) {
+        a = glint_walk_steps(a, n.x - k, odds.x, k);
+        b = glint_walk_steps(b, n.y - k, odds.y, k);
+        c = glint_walk_steps(c, n.z - k, odds.z, k);
+        d = glint_walk_steps(d, n.w - k, odds.w, k);
+        if !any(walked & (vec4f(a.excess, b.excess, c.excess, d.excess) > vec4f(0.0))) {
             break;
         }
-        hits += select(vec4f(0.0), vec4f(1.0), further);
-        density *= (n - k) * (odds / (k + 1.0));
-        more -= density;
     }
-    return min(hits, n);
+    let hits = vec4f(a.hits, b.hits, c.hits, d.hits);
+    return select(hits, n, hits > n);
 }
 
 // What rounding took from a * b = `product`, by halves whose products are exact.
@@ -176,34 +215,45 @@ fn glint_product_rest(a: vec4f, b: vec4f, product: vec4f) -> vec4f {
     return ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
 }
 
-// Hits k with P(hits > k) ~ u of n trials with p <= 1/2, q = 1 - p and np more than GLINT_FEW.
-fn glint_many_hits(n: GlintCounts, p: vec4f, q: vec4f, u: vec4f) -> GlintCounts {
+// Hits k with P(hits > k) ~ u of n trials with p <= 1/2, q = 1 - p, y = -log2(4 u (1 - u)) and np more than GLINT_FEW.
+fn glint_many_hits(n: GlintCounts, p: vec4f, q: vec4f, u: vec4f, y: vec4f) -> GlintCounts {
     let mean = n.high * p;
     var rest = vec4f(0.0);
     if glint_large_counts {
         rest = glint_product_rest(n.high, p, mean) + n.low * p;
     }
     let sigma = sqrt((mean + rest) * q);
-    let z = glint_normal_upper_quantile(u);
-    let skew = q - p;
+    let quantile = glint_normal_upper_fraction(u, y);
+    // z / sigma: one division for both.
+    let slope = quantile[0] / (quantile[1] * sigma);
+    let z = slope * sigma;
     let z2 = z * z;
-    let third = (1.0 - 6.0 * p * q) * (z2 - 3.0) * (1.0 / 24.0) - skew * skew * (2.0 * z2 - 5.0) * (1.0 / 36.0);
-    let spread = sigma * z + skew * (z2 - 1.0) * (1.0 / 6.0) + z * (third - 1.0 / 24.0) / sigma;
+    // 72 times (1 - 6 p q) (z^2 - 3) / 24 - (q - p)^2 (2 z^2 - 5) / 36 - 1 / 24, with (q - p)^2 = 1 - 4 p q.
+    let third = p * q * (14.0 - 2.0 * z2) - (z2 + 2.0);
+    let spread = sigma * z + (q - p) * (z2 - 1.0) * (1.0 / 6.0) + slope * third * (1.0 / 72.0);
     let small = clamp(round(mean + (rest + spread)), vec4f(0.0), glint_counts_value(n));
+    if !glint_large_counts {
+        return GlintCounts(small, vec4f(0.0));
+    }
     let large = glint_counts(mean, round(rest + spread));
     let is_small = mean < vec4f(GLINT_WHOLE);
     return GlintCounts(select(large.high, small, is_small), select(large.low, vec4f(0.0), is_small));
 }
 
-// Hits and misses of four lots of `n` trials with hit chance `p`; they add up to `n`.
-fn glint_whole_binomials(n: GlintCounts, p: vec4f, q: vec4f, bits: vec4u) -> GlintSplits {
-    let swapped = p > q;
-    let rare = min(p, q);
-    let frequent = max(p, q);
+// Hits and misses of four lots of `n` trials with hit chance `p`; they add up to `n`. Where both p and q are 0, all hit. Lots that are
+// not `drawn` are anything.
+fn glint_whole_binomials(n: GlintCounts, p: vec4f, q: vec4f, bits: vec4u, drawn: vec4<bool>) -> GlintSplits {
+    let swapped = p >= q;
+    let rare = select(p, q, swapped);
+    let frequent = select(q, p, swapped);
     let u = glint_units_from_bits(select(bits, ~bits, swapped));
-    let few = glint_counts_value(n) * rare <= vec4f(GLINT_FEW);
-    let walked = glint_few_hits(glint_counts_value(n), rare, frequent, select(vec4f(1.0), u, few));
-    let many = glint_many_hits(n, rare, frequent, u);
+    let value = glint_counts_value(n);
+    let few = value * rare <= vec4f(GLINT_FEW);
+    // Logarithms of both ways are one polynomial.
+    let digits = glint_digits(4.0 * u * (1.0 - u));
+    let halvings = glint_halvings(select(digits.rest, rare, few));
+    let walked = glint_few_hits(value, rare, frequent, u, value * halvings, few & drawn);
+    let many = glint_many_hits(n, rare, frequent, u, digits.whole + halvings);
     let hits = GlintCounts(select(many.high, walked, few), select(many.low, vec4f(0.0), few));
     let misses = glint_counts_subtract(n, hits);
     return GlintSplits(
@@ -216,21 +266,17 @@ fn glint_whole_binomials(n: GlintCounts, p: vec4f, q: vec4f, bits: vec4u) -> Gli
 fn glint_binomial(n: f32, p: f32, q: f32, bits: vec2u) -> GlintSplit {
     let none = vec4f(0.0);
     let whole = GlintCounts(vec4f(glint_whole_count(n, bits.x), 0.0, 0.0, 0.0), none);
-    let splits = glint_whole_binomials(whole, vec4f(p, none.xyz), vec4f(q, vec3f(1.0)), vec4u(bits.y, 0u, 0u, 0u));
+    let splits = glint_whole_binomials(whole, vec4f(p, none.xyz), vec4f(q, vec3f(1.0)), vec4u(bits.y, 0u, 0u, 0u), GLINT_ONE);
     return GlintSplit(
         GlintCount(splits.hits.high.x, splits.hits.low.x), GlintCount(splits.misses.high.x, splits.misses.low.x),
     );
 }
 
 // Four nodes of the tree: how many of `n` go left and right, with chances in proportion to the weights.
-fn glint_splits(n: GlintCounts, left: vec4f, right: vec4f, bits: vec4u) -> GlintSplits {
-    let whole = left + right;
-    let drawn = (right > vec4f(0.0)) & (n.high > vec4f(0.0));
-    // A node without a draw is one that all go left of.
-    let divisor = select(vec4f(1.0), whole, drawn);
-    let p = select(vec4f(1.0), left / divisor, drawn);
-    let q = select(vec4f(0.0), right / divisor, drawn);
-    return glint_whole_binomials(n, p, q, bits);
+fn glint_splits(n: GlintCounts, left: vec4f, right: vec4f, bits: vec4u, drawn: vec4<bool>) -> GlintSplits {
+    // Nodes without weight have chances of 0, of which all go left.
+    let share = 1.0 / max(left + right, vec4f(1.0e-37));
+    return glint_whole_binomials(n, left * share, right * share, bits, drawn);
 }
 
 // Weight of four leaves.
@@ -252,13 +298,13 @@ fn glint_pair_counts(x: GlintSplits) -> GlintCounts {
 }
 
 // Two subtrees of four leaves, of the first two of `tops`: words of their top nodes and of the four children.
-fn glint_multinomial_eight(tops: GlintCounts, a: vec4f, b: vec4f, top: vec2u, children: vec4u) -> array<vec4f, 2> {
+fn glint_multinomial_eight(tops: GlintCounts, a: vec4f, b: vec4f, top: vec2u, children: vec4u, drawn: vec4<bool>) -> array<vec4f, 2> {
     let none = vec2f(0.0);
     let halves = glint_splits(
-        tops, vec4f(a.x + a.y, b.x + b.y, none), vec4f(a.z + a.w, b.z + b.w, none), vec4u(top, 0u, 0u),
+        tops, vec4f(a.x + a.y, b.x + b.y, none), vec4f(a.z + a.w, b.z + b.w, none), vec4u(top, 0u, 0u), drawn & GLINT_TWO,
     );
     let leaves = glint_splits(
-        glint_pair_counts(halves), vec4f(a.x, a.z, b.x, b.z), vec4f(a.y, a.w, b.y, b.w), children,
+        glint_pair_counts(halves), vec4f(a.x, a.z, b.x, b.z), vec4f(a.y, a.w, b.y, b.w), children, drawn.xxyy,
     );
     let left = glint_counts_value(leaves.hits);
     let right = glint_counts_value(leaves.misses);
@@ -275,25 +321,25 @@ fn glint_multinomial(n: f32, weights: GlintLevels, levels: u32, words: GlintWord
     if levels <= 4u {
         // With two levels the tree's only node is its root.
         let left = select(words.a.z, words.a.y, levels <= 2u);
-        let counts = glint_multinomial_eight(root, weights.a, none, vec2u(words.a.y, 0u), vec4u(left, words.a.w, 0u, 0u));
+        let counts = glint_multinomial_eight(root, weights.a, none, vec2u(words.a.y, 0u), vec4u(left, words.a.w, 0u, 0u), GLINT_ONE);
         return GlintLevels(counts[0], none, none, none);
     }
     let a = glint_quad_weight(weights.a);
     let b = glint_quad_weight(weights.b);
     if levels <= 8u {
-        let halves = glint_splits(root, vec4f(a, none.xyz), vec4f(b, none.xyz), vec4u(words.a.y, 0u, 0u, 0u));
+        let halves = glint_splits(root, vec4f(a, none.xyz), vec4f(b, none.xyz), vec4u(words.a.y, 0u, 0u, 0u), GLINT_ONE);
         let counts =
-            glint_multinomial_eight(glint_pair_counts(halves), weights.a, weights.b, words.a.zw, words.b);
+            glint_multinomial_eight(glint_pair_counts(halves), weights.a, weights.b, words.a.zw, words.b, GLINT_TWO);
         return GlintLevels(counts[0], counts[1], none, none);
     }
     let c = glint_quad_weight(weights.c);
     let d = glint_quad_weight(weights.d);
-    let halves = glint_splits(root, vec4f(a + b, none.xyz), vec4f(c + d, none.xyz), vec4u(words.a.y, 0u, 0u, 0u));
+    let halves = glint_splits(root, vec4f(a + b, none.xyz), vec4f(c + d, none.xyz), vec4u(words.a.y, 0u, 0u, 0u), GLINT_ONE);
     let quarters = glint_pair_counts(
-        glint_splits(glint_pair_counts(halves), vec4f(a, c, none.xy), vec4f(b, d, none.xy), vec4u(words.a.zw, 0u, 0u)),
+        glint_splits(glint_pair_counts(halves), vec4f(a, c, none.xy), vec4f(b, d, none.xy), vec4u(words.a.zw, 0u, 0u), GLINT_TWO),
     );
-    let dark = glint_multinomial_eight(quarters, weights.a, weights.b, words.b.xy, words.c);
+    let dark = glint_multinomial_eight(quarters, weights.a, weights.b, words.b.xy, words.c, GLINT_TWO);
     let rest = GlintCounts(quarters.high.zwzw, quarters.low.zwzw);
-    let bright = glint_multinomial_eight(rest, weights.c, weights.d, words.b.zw, words.d);
+    let bright = glint_multinomial_eight(rest, weights.c, weights.d, words.b.zw, words.d, GLINT_TWO);
     return GlintLevels(dark[0], dark[1], bright[0], bright[1]);
 }

@@ -188,24 +188,25 @@ fn glint_environment_draw(
     facets: f32,
     words: GlintWords,
 ) -> vec3f {
-    if !(chances.moments.x > 0.0 && facets > 0.0) {
-        return select(vec3f(0.0), chances.smooth_radiance, facets > 0.0);
-    }
     var p = chances.p;
     if environment.levels == 1u {
         // A single level needs a second one for the facets that reflect nothing.
         p.a.y = 1.0 - p.a.x;
     }
     let counts = glint_multinomial(facets, p, environment.levels, words);
-    let there = glint_levels_sum(counts, environment.levels) / facets;
+    let share = 1.0 / (facets * chances.moments.x);
+    let there = glint_levels_sum(counts, environment.levels) * chances.moments.x * share;
     var ratios = vec3f(0.0);
     if environment.coloured != 0u {
         ratios = glint_coloured_ratios(environment, chances, facets, counts);
     } else {
         let light = glint_levels_dot(environment.level, counts, environment.levels);
-        ratios = vec3f(light / (facets * chances.moments.x));
+        ratios = vec3f(light * share);
     }
-    return chances.smooth_radiance * max(vec3f(there) + chances.spread * (ratios - there), vec3f(0.0));
+    let drawn = max(vec3f(there) + chances.spread * (ratios - there), vec3f(0.0));
+    // Without light or facets there is nothing to draw.
+    let dark = select(vec3f(0.0), vec3f(1.0), facets > 0.0);
+    return chances.smooth_radiance * select(dark, drawn, (chances.moments.x > 0.0) & (facets > 0.0));
 }
 
 // Radiance towards the eye of one draw of facets, linear RGB; `words` are the random words of the pixel.

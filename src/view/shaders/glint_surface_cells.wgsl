@@ -12,13 +12,16 @@ const GLINT_MAX_FACETS: f32 = 1.0e16;
 // (sqrt(3) - 1) / 2.
 const GLINT_SKEW: f32 = 0.3660254;
 
-// The four corners around a place: random states, and one over their weights.
+// The four corners around a place.
 struct GlintSurfaceCells {
     a: GlintCellState,
     b: GlintCellState,
     c: GlintCellState,
     d: GlintCellState,
+    // 2^-32 / weight; the weights add up to 1.
     inverse_weights: vec4f,
+    // Sums of the products of two, three and four weights.
+    sums: vec3f,
 }
 
 // Area of a pixel whose place changes by `d_dx` and `d_dy` along the screen's axes.
@@ -29,9 +32,11 @@ fn glint_footprint_area(d_dx: vec2f, d_dy: vec2f) -> f32 {
     return abs(dx.x * dy.y - dx.y * dy.x);
 }
 
-// Level at which cells have the pixel's area.
+// Level at which cells have the pixel's area, from the bits of an f32: exact at powers of two and straight between them, at most
+// 0.05 less than the logarithm.
 fn glint_surface_lod(area: f32) -> f32 {
-    return clamp(0.5 * log2(max(area, 1.0e-20)), -GLINT_SURFACE_MAX_LEVEL, GLINT_SURFACE_MAX_LEVEL - 1.0);
+    let logarithm = f32(bitcast<i32>(max(area, 1.0e-20))) * (1.0 / 8388608.0) - 127.0;
+    return clamp(0.5 * logarithm, -GLINT_SURFACE_MAX_LEVEL, GLINT_SURFACE_MAX_LEVEL - 1.0);
 }
 
 // Facets under a pixel of `area` at `density` facets a unit.
@@ -39,12 +44,23 @@ fn glint_footprint_facets(area: f32, density: f32) -> f32 {
     return clamp(area * density, 0.0, GLINT_MAX_FACETS);
 }
 
+// Mixes 32 bits in one round, a bijection: enough for the upper bits of sums of random numbers.
+fn glint_surface_mix(value: u32) -> u32 {
+    let v = (value ^ (value >> 16u)) * 0xbb67ae85u;
+    return v ^ (v >> 15u);
+}
+
 // Random state of the corner `offset` from `base` on the fine or the coarse grid: two Feistel rounds, a bijection of the place.
 fn glint_surface_corner(base: vec2i, offset: vec2i, coarse: bool, seeds: vec2u) -> GlintCellState {
     let at = bitcast<vec2u>(select(base + base, base, coarse) + offset);
     let seed = select(seeds.x, seeds.y, coarse);
-    let a = at.x + glint_mix_bits(at.y + seed);
-    return GlintCellState(a, at.y + glint_mix_bits(a ^ seed));
+    let a = at.x + glint_surface_mix(at.y + seed);
+    return GlintCellState(a, at.y + glint_surface_mix(a ^ seed));
+}
+
+// 32 random bits of a corner, draw `index`.
+fn glint_surface_bits(state: GlintCellState, index: u32) -> u32 {
+    return glint_surface_mix(state.a + (state.b | 1u) * (index + 1u));
 }
 
 // Seed of a level's grid.
@@ -66,8 +82,8 @@ fn glint_surface_cells(position: vec2f, lod: f32, seed: u32) -> GlintSurfaceCell
     let f = q - whole;
     let base = vec2i(whole);
     let below = f.x > f.y;
-    let c2 = 2.0 * min(f.x, f.y);
-    let a2 = 2.0 - 2.0 * max(f.x, f.y);
+    let c2 = 2.0 * select(f.x, f.y, below);
+    let a2 = 2.0 - 2.0 * select(f.y, f.x, below);
     let b2 = 2.0 - a2 - c2;
     let rest = 1.0 - t;
     let alpha = a2 - rest;
@@ -97,46 +113,47 @@ fn glint_surface_cells(position: vec2f, lod: f32, seed: u32) -> GlintSurfaceCell
     let third = select(select(one, vec2i(0), near_a), along + along, near_b);
     // D between A and B, or C.
     let fourth = select(along, vec2i(2), near_c);
+    let weights = max(vec4f(w1, w2, w3, w4), vec4f(1.0e-12));
+    let pairs = weights.xz + weights.yw;
+    let products = weights.xz * weights.yw;
+    // One division for the inverses of both.
+    let inverse = (1.0 / 4294967296.0) / products;
     return GlintSurfaceCells(
         glint_surface_corner(base, first, coarse_a, seeds),
         glint_surface_corner(base, second, coarse_b, seeds),
         glint_surface_corner(base, third, !(near_a || near_b), seeds),
         glint_surface_corner(base, fourth, false, seeds),
-        1.0 / max(vec4f(w1, w2, w3, w4), vec4f(1.0e-12)),
+        weights.yxwz * inverse.xxyy,
+        vec3f(
+            products.x + products.y + pairs.x * pairs.y,
+            products.x * pairs.y + products.y * pairs.x,
+            products.x * products.y,
+        ),
     );
 }
 
-// -log2(1 - h) for h = (bits + 1/2) / 2^32, off by 1e-6 of itself: exponential numbers of mean 1 / ln 2.
-fn glint_halvings_from_bits(bits: vec4u) -> vec4f {
-    let signed = bitcast<vec4i>(bits);
-    // All ones where h is above 1/2.
-    let upper = signed >> vec4u(31u);
-    // Distance of h to the nearer of 0 and 1, and its mantissa in [1/2, 1).
-    let x = (vec4f(signed ^ upper) + 0.5) * (1.0 / 4294967296.0);
-    let number = bitcast<vec4i>(x);
-    let mantissa = bitcast<vec4f>((number & vec4i(0x007fffff)) | vec4i(0x3f000000));
-    let whole = vec4f((126 - (number >> vec4u(23u))) & upper);
-    return whole + glint_halvings(select(x, 1.0 - mantissa, upper != vec4i(0)));
-}
-
-// The least exponential number of a place's corners, draw `index`.
-fn glint_surface_least(cells: GlintSurfaceCells, index: u32) -> f32 {
+// The word of a place, draw `index`, from 0 to 1: uniform, and small where a corner has a rare number.
+fn glint_surface_word(cells: GlintSurfaceCells, index: u32) -> f32 {
     let bits = vec4u(
-        glint_draw_bits(cells.a, index), glint_draw_bits(cells.b, index),
-        glint_draw_bits(cells.c, index), glint_draw_bits(cells.d, index),
+        glint_surface_bits(cells.a, index), glint_surface_bits(cells.b, index),
+        glint_surface_bits(cells.c, index), glint_surface_bits(cells.d, index),
     );
-    let all = glint_halvings_from_bits(bits) * cells.inverse_weights;
-    return min(min(all.x, all.y), min(all.z, all.w));
+    // Positive numbers have the order of their bits. As integers, no device minds what is not a number.
+    let all = bitcast<vec4u>(vec4f(bits) * cells.inverse_weights);
+    let least = bitcast<f32>(min(min(all.x, all.y), min(all.z, all.w)));
+    // Half a step of each corner's word: the least is a corner's as often as its weight says, and was divided by it.
+    let x = least + 1.0 / 2147483648.0;
+    // 1 less the product of all 1 - weight x by its terms, so that small ones keep their digits.
+    return x * (1.0 - x * (cells.sums.x - x * (cells.sums.y - x * cells.sums.z)));
 }
 
-// Words `index` to `index` + 3 of a place: uniform, and small where a corner has a rare number.
+// Words `index` to `index` + 3 of a place. The conversion keeps to the range of words.
 fn glint_surface_four_words(cells: GlintSurfaceCells, index: u32) -> vec4u {
-    let least = vec4f(
-        glint_surface_least(cells, index), glint_surface_least(cells, index + 1u),
-        glint_surface_least(cells, index + 2u), glint_surface_least(cells, index + 3u),
+    let words = vec4f(
+        glint_surface_word(cells, index), glint_surface_word(cells, index + 1u),
+        glint_surface_word(cells, index + 2u), glint_surface_word(cells, index + 3u),
     );
-    // After 24 halvings no f32 is nearer to 1.
-    return vec4u(glint_halved(min(least, vec4f(24.0))).lost * 4294967296.0);
+    return vec4u(words * 4294967296.0);
 }
 
 // The words that a multinomial draw of `levels` levels reads: small where the facet of a fraction is there, large where the
