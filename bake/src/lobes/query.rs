@@ -35,6 +35,8 @@ pub struct QuerySettings {
     pub max_boxes: f32,
     /// Footprints reach this far, in standard deviations.
     pub reach: f32,
+    /// The same where cells are read, whose lobes reach beyond them.
+    pub cells_reach: f32,
     /// Part of the way from a stored level to the next over which both are read, above 0 to 1.
     pub blend: f32,
 }
@@ -51,8 +53,14 @@ impl QuerySettings {
             max_cells: 2.0,
             max_boxes: 48.0,
             reach: 1.8,
+            cells_reach: 1.1,
             blend: 0.15,
         }
+    }
+
+    /// How far footprints reach at a level, in standard deviations.
+    pub fn reach_of(&self, detail: Detail) -> f32 {
+        if matches!(detail, Detail::Boxes(_)) { self.reach } else { self.cells_reach }
     }
 }
 
@@ -66,6 +74,7 @@ impl Default for QuerySettings {
             max_cells: 32.0,
             max_boxes: 1024.0,
             reach: 3.0,
+            cells_reach: 3.0,
             blend: 0.5,
         }
     }
@@ -278,7 +287,7 @@ impl BakedLobes {
                 sum += seen.density(s);
                 share += seen.share;
             };
-            Query::new(self, frame, roughness, visit).add_repeated(detail, settings.reach);
+            Query::new(self, frame, roughness, visit).add_repeated(detail, settings.reach_of(detail));
             (sum, share)
         })
     }
@@ -286,7 +295,7 @@ impl BakedLobes {
     /// The lobes that a footprint sees on the repeated map, shares summing to 1.
     pub fn gather(&self, footprint: &Footprint, roughness: f32, settings: &QuerySettings) -> Gathered {
         let frame = self.frame(footprint);
-        self.lod(&frame, settings).gather(|list, detail| self.add(list, &frame, detail, roughness, settings.reach))
+        self.lod(&frame, settings).gather(|to, at| self.add(to, &frame, at, roughness, settings.reach_of(at)))
     }
 
     /// The lobes that a footprint sees at one level.

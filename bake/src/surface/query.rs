@@ -34,8 +34,8 @@ pub struct SurfaceSettings {
     pub box_range: f32,
     /// Footprint's major deviation, in texels, up to which boxes at seams are halved along both axes.
     pub halves_until: f32,
-    /// Whether a block that seams cross is read as that of the patch at its middle, as if there were no seams, and a box as
-    /// that of the patch at its first texel.
+    /// Whether a block that seams cross is read as that of the patch at its middle, as if there were no seams, and boxes as
+    /// those of the patch at the footprint's middle.
     pub whole_blocks: bool,
 }
 
@@ -87,7 +87,7 @@ struct SurfaceQuery<'a, V: FnMut(&SeenLobe)> {
 impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
     /// Adds what the surface shows of a level under the footprint. Returns the number of blocks or boxes visited.
     fn add(&mut self, detail: Detail) -> u32 {
-        let (frame, reach) = (self.view.frame, self.settings.query.reach);
+        let (frame, reach) = (self.view.frame, self.settings.query.reach_of(detail));
         let levels = &self.surface.lobes.params.levels;
         let last = levels.len() - 1;
         let (edge, origin) = match detail {
@@ -267,10 +267,10 @@ impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
         })
     }
 
-    /// The same as if the patch that shows the first of the texels around the place showed all of them.
+    /// The same as if the patch that shows the footprint's middle showed all places.
     fn nominal_patch_at(&self, u: Vec2) -> (Vec2, Mat2, Vec2) {
-        let first = (u - self.box_origin()).floor();
-        let (i0, j0) = (first.x as i32, first.y as i32);
+        let middle = self.view.frame.mean.floor();
+        let (i0, j0) = (middle.x as i32, middle.y as i32);
         let [x, y] = self.on_surface([i0, j0]);
         let (sx, sy) = self.surface.synthesis.source_texel(x, y);
         bilinear(self.surface.lobes.params.filter, u, |i, j| {

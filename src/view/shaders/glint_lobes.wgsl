@@ -85,6 +85,8 @@ struct GlintLobesSettings {
     max_boxes: f32,
     // Footprints reach this far, in standard deviations.
     reach: f32,
+    // The same where cells are read, whose lobes reach beyond them.
+    cells_reach: f32,
     // Part of the way from a stored level to the next over which both are read, above 0 to 1.
     blend: f32,
 }
@@ -124,6 +126,17 @@ struct GlintLobe {
     residual: vec3f,
 }
 
+// An ellipse around a footprint, for the ranges of x that it has at some heights.
+struct GlintLobesEllipse {
+    mean: vec2f,
+    // Half its height.
+    top: f32,
+    // At height y: the middle over y, half the width over sqrt(top^2 - y^2), and where the right end is.
+    slope: f32,
+    narrow: f32,
+    widest: f32,
+}
+
 // What a lobe gives to a footprint: a Gaussian over the disk of normals.
 struct GlintSeenLobe {
     // Share of the footprint, to be divided by the sum of all shares.
@@ -145,12 +158,12 @@ struct GlintLobesPatch {
 }
 
 fn glint_lobes_default_settings() -> GlintLobesSettings {
-    return GlintLobesSettings(0.7, 0.25, 0.375, 0.25, 32.0, 1024.0, 3.0, 0.5);
+    return GlintLobesSettings(0.7, 0.25, 0.375, 0.25, 32.0, 1024.0, 3.0, 3.0, 0.5);
 }
 
 // Few lobes, for pictures: about two cells of the map's lobes, or some twenty boxes, a footprint.
 fn glint_lobes_realtime_settings() -> GlintLobesSettings {
-    return GlintLobesSettings(0.18, 0.22, 0.24, 1.1, 2.0, 48.0, 1.8, 0.15);
+    return GlintLobesSettings(0.18, 0.22, 0.24, 1.1, 2.0, 48.0, 1.8, 1.1, 0.15);
 }
 
 // x y' - y x'.
@@ -188,33 +201,29 @@ fn glint_lobes_variance_y(frame: GlintLobesFrame) -> f32 {
     return a * a + b * b;
 }
 
-// Half the height of the ellipse of `reach` standard deviations.
-fn glint_lobes_reach_y(frame: GlintLobesFrame, reach: f32) -> f32 {
-    return reach * sqrt(glint_lobes_variance_y(frame));
-}
-
-// Range of x of the ellipse of `reach` standard deviations between two heights; x > y if they miss it.
-fn glint_lobes_span_x(frame: GlintLobesFrame, reach: f32, low: f32, high: f32) -> vec2f {
+// The ellipse of `reach` standard deviations.
+fn glint_lobes_ellipse(frame: GlintLobesFrame, reach: f32) -> GlintLobesEllipse {
     let yy = glint_lobes_variance_y(frame);
-    let top = reach * sqrt(yy);
-    let y0 = max(low - frame.mean.y, -top);
-    let y1 = min(high - frame.mean.y, top);
-    if !(y0 <= y1) {
-        return vec2f(1.0, 0.0);
-    }
-    let xy = frame.axis.x * frame.axis.y * (frame.major * frame.major - frame.minor * frame.minor);
     let a = frame.axis.x * frame.major;
     let b = frame.axis.y * frame.minor;
     let xx = a * a + b * b;
-    // At height y: middle -+ half the width. Both sides are extreme where the ellipse is, or at an end of the range.
-    let narrow = frame.major * frame.minor / yy;
-    let widest = reach * xy / sqrt(xx);
-    let left = clamp(-widest, y0, y1);
-    let right = clamp(widest, y0, y1);
-    return vec2f(
-        frame.mean.x + xy / yy * left - narrow * sqrt(max(top * top - left * left, 0.0)),
-        frame.mean.x + xy / yy * right + narrow * sqrt(max(top * top - right * right, 0.0)),
+    let xy = frame.axis.x * frame.axis.y * (frame.major * frame.major - frame.minor * frame.minor);
+    let part = 1.0 / yy;
+    return GlintLobesEllipse(
+        frame.mean, reach * sqrt(yy), xy * part, frame.major * frame.minor * part, reach * xy * inverseSqrt(xx),
     );
+}
+
+// Range of x of an ellipse between two heights; x > y if they miss it.
+fn glint_lobes_ellipse_span(ellipse: GlintLobesEllipse, low: f32, high: f32) -> vec2f {
+    let top = ellipse.top;
+    let y0 = max(low - ellipse.mean.y, -top);
+    let y1 = min(high - ellipse.mean.y, top);
+    // Both sides are extreme where the ellipse is, or at an end of the range.
+    let ends = clamp(vec2f(-ellipse.widest, ellipse.widest), vec2f(y0), vec2f(y1));
+    let half = ellipse.narrow * sqrt(max(top * top - ends * ends, vec2f(0.0)));
+    let span = ellipse.mean.x + ellipse.slope * ends + vec2f(-half.x, half.y);
+    return select(vec2f(1.0, 0.0), span, y0 <= y1);
 }
 
 // Lower triangular factor F of a covariance F F^T: xx, yx, yy.
@@ -276,7 +285,8 @@ fn glint_lobes_seen(query: GlintLobesQuery, lobe: GlintLobe, d: vec2f) -> GlintS
     // M = I + F^T S^-1 F is I + p p^T + q q^T; det M and adj M are sums of squares and outer products.
     let area = glint_cross2(p, q);
     let det = 1.0 + dot(p, p) + dot(q, q) + area * area;
-    let part = 1.0 / det;
+    let root = inverseSqrt(det);
+    let part = root * root;
     let across = p * w.y - q * w.x;
     let distance = (dot(w, w) + dot(across, across)) * part;
     let toward = (p * w.x + q * w.y + vec2f(-across.y, across.x) * area) * part;
@@ -287,13 +297,13 @@ fn glint_lobes_seen(query: GlintLobesQuery, lobe: GlintLobe, d: vec2f) -> GlintS
     let xy = lobe.residual.y + (a.x * a.y + b.x * b.y + u.x * u.y + v.x * v.y) * part;
     let yy = intrinsic + lobe.residual.z + (a.y * a.y + b.y * b.y + u.y * u.y + v.y * v.y) * part;
     let mean = lobe.normal + a * toward.x + b * toward.y;
-    let share = lobe.weight * exp(-0.5 * distance) * sqrt(part);
+    let share = lobe.weight * exp(-0.5 * distance) * root;
     // Rounding may take the determinant of a long thin Gaussian below what it can be.
-    let volume = max(xx * yy - xy * xy, intrinsic * max(xx, yy));
+    let peak = inverseSqrt(max(xx * yy - xy * xy, intrinsic * max(xx, yy)));
     let e = query.s - mean;
-    let far = (yy * e.x * e.x - 2.0 * xy * e.x * e.y + xx * e.y * e.y) / volume;
+    let far = (yy * e.x * e.x - 2.0 * xy * e.x * e.y + xx * e.y * e.y) * peak * peak;
     let near = far <= GLINT_LOBES_CUT;
-    let density = select(0.0, share * inverseSqrt(volume) * exp(-0.5 * far) * GLINT_LOBES_PEAK, near);
+    let density = select(0.0, share * peak * exp(-0.5 * far) * GLINT_LOBES_PEAK, near);
     // Five standard deviations from the rim there is less than 4e-6 beyond it. The twin takes the trace for the largest
     // variance, here it is a row's sum; both leave more lobes to a sum that comes to the same.
     let to_rim = 1.0 - length(mean);
@@ -301,9 +311,9 @@ fn glint_lobes_seen(query: GlintLobesQuery, lobe: GlintLobe, d: vec2f) -> GlintS
     return GlintSeenLobe(share, density, near && !inside, mean, vec3f(xx, xy, yy));
 }
 
-// First and last box of a row of boxes of `edge` texels, the row's low edge at `y`, under a footprint; boxes begin at `origin`.
-fn glint_lobes_row(frame: GlintLobesFrame, reach: f32, origin: f32, edge: f32, y: f32) -> vec2i {
-    let span = glint_lobes_span_x(frame, reach, y, y + edge);
+// First and last box of a row of boxes of `edge` texels, the row's low edge at `y`, under an ellipse; boxes begin at `origin`.
+fn glint_lobes_row(ellipse: GlintLobesEllipse, origin: f32, edge: f32, y: f32) -> vec2i {
+    let span = glint_lobes_ellipse_span(ellipse, y, y + edge);
     if !(span.x <= span.y) {
         return vec2i(1, 0);
     }

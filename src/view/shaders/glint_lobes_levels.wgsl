@@ -22,69 +22,6 @@ struct GlintLobesSlot {
     copy: f32,
 }
 
-// A texel of the map that lies less than the map's size beyond its edges; wrapped or clamped.
-fn glint_lobes_wrapped(map: GlintLobesMap, texel: vec2i) -> vec2i {
-    let size = vec2i(i32(map.width), i32(map.height));
-    let moved = texel + select(vec2i(0), size, texel < vec2i(0)) - select(vec2i(0), size, texel >= size);
-    return clamp(select(texel, moved, map.wrap == GLINT_WRAP_REPEAT), vec2i(0), size - 1);
-}
-
-// Factor and offset of stored numbers of normals.
-fn glint_lobes_normals_scale(map: GlintLobesMap) -> vec2f {
-    return select(vec2f(2.0 / 255.0, -1.0), vec2f(1.0 / 32767.0, 0.0), map.normals == GLINT_LOBES_SNORM16);
-}
-
-// Stored numbers of a texel's normal.
-fn glint_lobes_codes(word: u32) -> vec2f {
-    return vec2f(f32(bitcast<i32>(word << 16u) >> 16u), f32(bitcast<i32>(word) >> 16u));
-}
-
-// Projected normal of texel (i, j), which lies less than the map's size beyond its edges.
-fn glint_lobes_texel(map: GlintLobesMap, i: i32, j: i32) -> vec2f {
-    let at = glint_lobes_wrapped(map, vec2i(i, j));
-    let scale = glint_lobes_normals_scale(map);
-    return glint_lobes_codes(glint_lobes_normals_pair(u32(at.y) * map.width + u32(at.x)).x) * scale.x + scale.y;
-}
-
-// A bilinear patch from its texels, at the fraction `f`.
-fn glint_lobes_bilinear(s00: vec2f, s10: vec2f, s01: vec2f, s11: vec2f, f: vec2f) -> GlintLobesPatch {
-    let top = s00 + (s10 - s00) * f.x;
-    let bottom = s01 + (s11 - s01) * f.x;
-    let twist = s11 - s10 - s01 + s00;
-    let along = s10 - s00 + twist * f.y;
-    return GlintLobesPatch(top + (bottom - top) * f.y, mat2x2f(along, bottom - top), twist);
-}
-
-// The bilinear patch from texel `at` on, which lies less than the map's size beyond its edges, at the fraction `f`. A nearest
-// texel has no slopes.
-fn glint_lobes_patch(map: GlintLobesMap, at: vec2i, f: vec2f) -> GlintLobesPatch {
-    let place = glint_lobes_wrapped(map, at);
-    let beside = glint_lobes_wrapped(map, at + vec2i(1, 0)).x;
-    let row = u32(place.y) * map.width;
-    let left = glint_lobes_normals_pair(row + u32(place.x));
-    let right = glint_lobes_normals_pair(row + u32(beside));
-    // Above the first row of a clamped map lies that row once more.
-    let again = map.wrap == GLINT_WRAP_CLAMP && at.y < 0;
-    let codes = glint_lobes_bilinear(
-        glint_lobes_codes(left.x),
-        glint_lobes_codes(right.x),
-        glint_lobes_codes(select(left.y, left.x, again)),
-        glint_lobes_codes(select(right.y, right.x, again)),
-        f,
-    );
-    let scale = glint_lobes_normals_scale(map);
-    let slope = select(scale.x, 0.0, map.nearest == 1u);
-    return GlintLobesPatch(codes.normal * scale.x + scale.y, codes.jacobian * slope, codes.twist * slope);
-}
-
-// Projected normal, Jacobian and twist of the filtered map at a place in it.
-fn glint_lobes_surface_at(map: GlintLobesMap, u: vec2f) -> GlintLobesPatch {
-    let nearest = map.nearest == 1u;
-    let p = select(u - 0.5, u, nearest);
-    let cell = floor(p);
-    return glint_lobes_patch(map, vec2i(cell), select(p - cell, vec2f(0.0), nearest));
-}
-
 // Edge of the boxes that a footprint is resolved in: a power of two, at most a texel.
 fn glint_lobes_box_edge(map: GlintLobesMap, frame: GlintLobesFrame, settings: GlintLobesSettings) -> f32 {
     // The seam of a clamped map cuts through whole-texel boxes.
@@ -148,8 +85,33 @@ fn glint_lobes_next_slot(slot: GlintLobesSlot, count: u32) -> GlintLobesSlot {
     return GlintLobesSlot(slot.index + 1u, slot.copy);
 }
 
-// Density and share of the lobes of a cell whose first lobe is `first` and whose corner lies at `corner`. The mass inside the
-// disk takes long and few lobes need it: it stands outside the loop over the others, which ends where one does.
+// Density of those lobes of a cell that need the mass inside the disk: few, and it takes long. The loop over lobes ends where one
+// does.
+fn glint_lobes_cut_lobes(
+    map: GlintLobesMap,
+    query: GlintLobesQuery,
+    level: GlintLobesLevel,
+    first: u32,
+    d: vec2f,
+) -> f32 {
+    var sum = 0.0;
+    var k = 0u;
+    while k < map.lobes_per_cell {
+        var seen = GlintSeenLobe();
+        while k < map.lobes_per_cell && !seen.cut {
+            let lobe = glint_lobes_lobe(map, level, first + k);
+            seen = glint_lobes_seen(query, lobe, d - lobe.position);
+            k += 1u;
+        }
+        if seen.cut {
+            sum += seen.density / glint_lobes_inside_disk(seen.mean, seen.covariance);
+        }
+    }
+    return sum;
+}
+
+// Density and share of the lobes of a cell whose first lobe is `first` and whose corner lies at `corner`. No lobe waits for
+// what was found of the one before it.
 fn glint_lobes_cell(
     map: GlintLobesMap,
     query: GlintLobesQuery,
@@ -158,21 +120,30 @@ fn glint_lobes_cell(
     corner: vec2f,
 ) -> vec2f {
     let d = query.frame.mean - corner;
-    var sum = vec2f(0.0);
-    var k = 0u;
-    while k < map.lobes_per_cell {
-        var seen = GlintSeenLobe();
-        while k < map.lobes_per_cell && !seen.cut {
-            let lobe = glint_lobes_lobe(map, level, first + k);
-            seen = glint_lobes_seen(query, lobe, d - lobe.position);
-            sum += vec2f(select(seen.density, 0.0, seen.cut), seen.share);
-            k += 1u;
-        }
-        if seen.cut {
-            sum.x += seen.density / glint_lobes_inside_disk(seen.mean, seen.covariance);
-        }
+    var sum = vec3f(0.0);
+    for (var k = 0u; k < map.lobes_per_cell; k++) {
+        let lobe = glint_lobes_lobe(map, level, first + k);
+        let seen = glint_lobes_seen(query, lobe, d - lobe.position);
+        sum += vec3f(select(seen.density, 0.0, seen.cut), seen.share, select(0.0, 1.0, seen.cut));
     }
-    return sum;
+    if sum.z > 0.0 {
+        sum.x += glint_lobes_cut_lobes(map, query, level, first, d);
+    }
+    return sum.xy;
+}
+
+// Range of x of an ellipse over a row of cells that begins at `start`; all of the level's for `whole`, x > y if there are none.
+fn glint_lobes_cells_span(
+    ellipse: GlintLobesEllipse,
+    size: vec2f,
+    start: f32,
+    edge: f32,
+    row: GlintLobesSlot,
+    all: vec2f,
+    whole: bool,
+) -> vec2f {
+    let under = glint_lobes_ellipse_span(ellipse, start, min(start + edge, (row.copy + 1.0) * size.y));
+    return select(under, vec2f(ellipse.mean.x - all.x, ellipse.mean.x + all.x), whole);
 }
 
 // Density and share of a stored level's cells under the footprint on the repeated map. `whole` sees each of the level's cells
@@ -196,68 +167,26 @@ fn glint_lobes_cells(
     let frame = query.frame;
     // From a little inside the first cell to a little inside the last.
     let all = 0.5 * size - 0.25;
-    let top = select(glint_lobes_reach_y(frame, reach), all.y, whole);
+    let ellipse = glint_lobes_ellipse(frame, reach);
+    let top = select(ellipse.top, all.y, whole);
     var sum = vec2f(0.0);
+    // One loop over rows and columns: of pixels that run in step few have their longest rows together.
     var row = glint_lobes_first_slot(frame.mean.y - top, size.y, edge, level.cells_y);
-    for (var j = 0u; j < GLINT_LOBES_MOST_STEPS; j++) {
-        let start = row.copy * size.y + f32(row.index) * edge;
-        if !(start <= frame.mean.y + top) {
-            break;
+    var start = row.copy * size.y + f32(row.index) * edge;
+    var span = glint_lobes_cells_span(ellipse, size, start, edge, row, all, whole);
+    var slot = glint_lobes_first_slot(span.x, size.x, edge, level.cells_x);
+    for (var i = 0u; i < GLINT_LOBES_MOST_STEPS && start <= frame.mean.y + top; i++) {
+        if slot.copy * size.x + f32(slot.index) * edge <= span.y {
+            let corner = vec2f(f32(slot.index), f32(row.index)) * edge + vec2f(slot.copy, row.copy) * size;
+            let first = level.first_lobe + (row.index * level.cells_x + slot.index) * map.lobes_per_cell;
+            sum += glint_lobes_cell(map, query, level, first, corner);
         }
-        let end = min(start + edge, (row.copy + 1.0) * size.y);
-        let under = glint_lobes_span_x(frame, reach, start, end);
-        let span = select(under, vec2f(frame.mean.x - all.x, frame.mean.x + all.x), whole);
-        if span.x <= span.y {
-            var slot = glint_lobes_first_slot(span.x, size.x, edge, level.cells_x);
-            for (var i = 0u; i < GLINT_LOBES_MOST_STEPS; i++) {
-                let left = slot.copy * size.x + f32(slot.index) * edge;
-                if !(left <= span.y) {
-                    break;
-                }
-                let displacement = vec2f(slot.copy, row.copy) * size;
-                let corner = vec2f(f32(slot.index), f32(row.index)) * edge + displacement;
-                let first = level.first_lobe + (row.index * level.cells_x + slot.index) * map.lobes_per_cell;
-                sum += glint_lobes_cell(map, query, level, first, corner);
-                slot = glint_lobes_next_slot(slot, level.cells_x);
-            }
-        }
-        row = glint_lobes_next_slot(row, level.cells_y);
-    }
-    return sum;
-}
-
-// Density and share of boxes of `edge` texels under the footprint on the repeated map; as in a cell, the loops end where a box
-// needs the mass inside the disk.
-fn glint_lobes_boxes(map: GlintLobesMap, query: GlintLobesQuery, edge: f32, reach: f32) -> vec2f {
-    let frame = query.frame;
-    let size = vec2f(f32(map.width), f32(map.height));
-    // Boxes of a bilinear map begin at texel centres, where its patches do.
-    let origin = select(0.5, 0.0, map.nearest == 1u);
-    let top = glint_lobes_reach_y(frame, reach);
-    var j = i32(floor((frame.mean.y - top - origin) / edge));
-    let last = min(i32(floor((frame.mean.y + top - origin) / edge)), j + i32(GLINT_LOBES_MOST_STEPS));
-    var row = glint_lobes_row(frame, reach, origin, edge, origin + f32(j) * edge);
-    var sum = vec2f(0.0);
-    while j <= last {
-        var seen = GlintSeenLobe();
-        while j <= last && !seen.cut {
-            let y = origin + (f32(j) + 0.5) * edge;
-            while row.x <= row.y && !seen.cut {
-                let place = vec2f(origin + (f32(row.x) + 0.5) * edge, y);
-                let copy = floor(place / size) * size;
-                let centre = place - copy;
-                let lobe = glint_lobes_box_lobe(glint_lobes_surface_at(map, centre), vec2f(edge));
-                seen = glint_lobes_seen(query, lobe, frame.mean - centre - copy);
-                sum += vec2f(select(seen.density, 0.0, seen.cut), seen.share);
-                row.x += 1;
-            }
-            if !seen.cut {
-                j += 1;
-                row = glint_lobes_row(frame, reach, origin, edge, origin + f32(j) * edge);
-            }
-        }
-        if seen.cut {
-            sum.x += seen.density / glint_lobes_inside_disk(seen.mean, seen.covariance);
+        slot = glint_lobes_next_slot(slot, level.cells_x);
+        if !(slot.copy * size.x + f32(slot.index) * edge <= span.y) {
+            row = glint_lobes_next_slot(row, level.cells_y);
+            start = row.copy * size.y + f32(row.index) * edge;
+            span = glint_lobes_cells_span(ellipse, size, start, edge, row, all, whole);
+            slot = glint_lobes_first_slot(span.x, size.x, edge, level.cells_x);
         }
     }
     return sum;
@@ -269,13 +198,13 @@ fn glint_lobes_level_sum(
     query: GlintLobesQuery,
     level: u32,
     box_edge: f32,
-    reach: f32,
+    settings: GlintLobesSettings,
 ) -> vec2f {
     if level == 0u {
-        return glint_lobes_boxes(map, query, box_edge, reach);
+        return glint_lobes_boxes(map, query, box_edge, settings.reach);
     }
     let stored = glint_lobes_level(min(level, map.levels) - 1u);
-    return glint_lobes_cells(map, query, stored, reach, level > map.levels);
+    return glint_lobes_cells(map, query, stored, settings.cells_reach, level > map.levels);
 }
 
 // P-NDF at the query's normal of a footprint on the repeated map: density over the disk, 0 outside it. The frame is that of
@@ -291,7 +220,7 @@ fn glint_lobes_p_ndf(map: GlintLobesMap, query: GlintLobesQuery, settings: Glint
     var at = select(lod.finer, last, lod.fraction >= 1.0);
     var level = at;
     while at <= last {
-        let sum = glint_lobes_level_sum(map, query, level, lod.box_edge, settings.reach);
+        let sum = glint_lobes_level_sum(map, query, level, lod.box_edge, settings);
         if !(sum.y >= GLINT_LOBES_LEAST_SHARE) && level < whole {
             level = whole;
             continue;

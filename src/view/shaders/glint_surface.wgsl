@@ -3,11 +3,12 @@
 // surface/query.rs, where deviations from the paper are derived: a level is walked by blocks of its cells' edge.
 //
 // Accessors that the including program defines, besides those of glint_lobes.wgsl and glint_synthesis.wgsl:
-//   fn glint_surface_block(q: GlintSurfaceQuery, level: u32, at: vec2i) -> vec2f
-//       density and share of the block of a level's edge whose first texel lies `at` from the origin, and
-//   fn glint_surface_box_patch(q: GlintSurfaceQuery, u: vec2f) -> GlintLobesPatch
-//       normal, Jacobian and twist of a box around `u`: both by glint_surface_seams.wgsl, which follows every seam, or
-//       glint_surface_blocks.wgsl, which follows none
+//   fn glint_surface_block(q: GlintSurfaceQuery, level: u32, place: vec2i, whole: bool) -> vec2f
+//       density and share of a block of a level's edge, `place` of them from the origin; with `whole` of the cell `place` of
+//       the level, as if every place were alike; and
+//   fn glint_surface_boxes(q: GlintSurfaceQuery, edge: f32) -> vec2f
+//       density and share of boxes of `edge` texels under the footprint: both by glint_surface_seams.wgsl, which follows every
+//       seam, or glint_surface_blocks.wgsl, which follows none
 
 const GLINT_SURFACE_MOST_TEXELS: i32 = 1073741824; // 2^30
 
@@ -98,60 +99,39 @@ fn glint_surface_patch_at(q: GlintSurfaceQuery, u: vec2f) -> GlintLobesPatch {
     );
 }
 
-// Density and share of boxes of `edge` texels under the footprint; as in a cell, the loops end where a box needs the mass inside
-// the disk.
-fn glint_surface_boxes(q: GlintSurfaceQuery, edge: f32) -> vec2f {
-    let frame = q.point.frame;
-    let reach = q.settings.lobes.reach;
-    // Boxes of a bilinear map begin at texel centres, where its patches do.
-    let origin = select(0.5, 0.0, q.map.nearest == 1u);
-    let top = glint_lobes_reach_y(frame, reach);
-    var j = i32(floor((frame.mean.y - top - origin) / edge));
-    let last = min(i32(floor((frame.mean.y + top - origin) / edge)), j + i32(GLINT_LOBES_MOST_STEPS));
-    var row = glint_lobes_row(frame, reach, origin, edge, origin + f32(j) * edge);
-    var sum = vec2f(0.0);
-    while j <= last {
-        var seen = GlintSeenLobe();
-        while j <= last && !seen.cut {
-            while row.x <= row.y && !seen.cut {
-                let centre = origin + (vec2f(f32(row.x), f32(j)) + 0.5) * edge;
-                let lobe = glint_lobes_box_lobe(glint_surface_box_patch(q, centre), vec2f(edge));
-                seen = glint_lobes_seen(q.point, lobe, frame.mean - centre);
-                sum += vec2f(select(seen.density, 0.0, seen.cut), seen.share);
-                row.x += 1;
-            }
-            if !seen.cut {
-                j += 1;
-                row = glint_lobes_row(frame, reach, origin, edge, origin + f32(j) * edge);
-            }
-        }
-        if seen.cut {
-            sum.x += seen.density / glint_lobes_inside_disk(seen.mean, seen.covariance);
-        }
-    }
-    return sum;
-}
-
 // Density and share of what the surface shows of a level under the footprint: 0 boxes, then the stored ones; the last, and
 // what would lie beyond it, is the whole surface.
-fn glint_surface_level_sum(q: GlintSurfaceQuery, level: u32, box_edge: f32) -> vec2f {
+fn glint_surface_level_sum(given: GlintSurfaceQuery, level: u32, box_edge: f32) -> vec2f {
     if level == 0u {
-        return glint_surface_boxes(q, box_edge);
+        return glint_surface_boxes(given, box_edge);
     }
-    if level >= q.map.levels {
-        return glint_lobes_cells(q.map, q.point, glint_lobes_level(q.map.levels - 1u), 0.0, true);
+    let whole = level >= given.map.levels;
+    let index = min(level, given.map.levels) - 1u;
+    let stored = glint_lobes_level(index);
+    var q = given;
+    if whole {
+        q.point.along = vec2f(0.0);
+        q.point.across = vec2f(0.0);
     }
     let frame = q.point.frame;
-    let reach = q.settings.lobes.reach;
-    let edge = f32(glint_lobes_level(level - 1u).cell_texels);
-    let top = glint_lobes_reach_y(frame, reach);
-    let first = i32(floor((frame.mean.y - top) / edge));
-    let last = min(i32(floor((frame.mean.y + top) / edge)), first + i32(GLINT_LOBES_MOST_STEPS));
+    let ellipse = glint_lobes_ellipse(frame, q.settings.lobes.cells_reach);
+    let edge = f32(stored.cell_texels);
+    let first = i32(floor((frame.mean.y - ellipse.top) / edge));
+    let below = min(i32(floor((frame.mean.y + ellipse.top) / edge)), first + i32(GLINT_LOBES_MOST_STEPS));
+    let last = select(below, i32(stored.cells_y) - 1, whole);
+    let every = vec2i(0, i32(stored.cells_x) - 1);
     var sum = vec2f(0.0);
-    for (var j = first; j <= last; j++) {
-        let row = glint_lobes_row(frame, reach, 0.0, edge, f32(j) * edge);
-        for (var i = row.x; i <= row.y; i++) {
-            sum += glint_surface_block(q, level - 1u, vec2i(i, j) * i32(edge));
+    // One loop over rows and columns: of pixels that run in step few have their longest rows together.
+    var j = select(first, 0, whole);
+    var row = select(glint_lobes_row(ellipse, 0.0, edge, f32(j) * edge), every, whole);
+    while j <= last {
+        if row.x <= row.y {
+            sum += glint_surface_block(q, index, vec2i(row.x, j), whole);
+        }
+        row.x += 1;
+        if row.x > row.y {
+            j += 1;
+            row = select(glint_lobes_row(ellipse, 0.0, edge, f32(j) * edge), every, whole);
         }
     }
     return sum;

@@ -65,9 +65,39 @@ fn glint_surface_lobe(query: GlintLobesQuery, lobe: GlintLobe, d: vec2f) -> vec2
     return vec2f(seen.density / inside, seen.share);
 }
 
-// Normal, Jacobian and twist of a box around `u`.
-fn glint_surface_box_patch(q: GlintSurfaceQuery, u: vec2f) -> GlintLobesPatch {
-    return glint_surface_patch_at(q, u);
+// Density and share of boxes of `edge` texels under the footprint. The mass inside the disk takes long and few boxes need it: the
+// loops over the others end where one does.
+fn glint_surface_boxes(q: GlintSurfaceQuery, edge: f32) -> vec2f {
+    let frame = q.point.frame;
+    let reach = q.settings.lobes.reach;
+    // Boxes of a bilinear map begin at texel centres, where its patches do.
+    let origin = select(0.5, 0.0, q.map.nearest == 1u);
+    let ellipse = glint_lobes_ellipse(frame, reach);
+    let top = ellipse.top;
+    var j = i32(floor((frame.mean.y - top - origin) / edge));
+    let last = min(i32(floor((frame.mean.y + top - origin) / edge)), j + i32(GLINT_LOBES_MOST_STEPS));
+    var row = glint_lobes_row(ellipse, origin, edge, origin + f32(j) * edge);
+    var sum = vec2f(0.0);
+    while j <= last {
+        var seen = GlintSeenLobe();
+        while j <= last && !seen.cut {
+            while row.x <= row.y && !seen.cut {
+                let centre = origin + (vec2f(f32(row.x), f32(j)) + 0.5) * edge;
+                let lobe = glint_lobes_box_lobe(glint_surface_patch_at(q, centre), vec2f(edge));
+                seen = glint_lobes_seen(q.point, lobe, frame.mean - centre);
+                sum += vec2f(select(seen.density, 0.0, seen.cut), seen.share);
+                row.x += 1;
+            }
+            if !seen.cut {
+                j += 1;
+                row = glint_lobes_row(ellipse, origin, edge, origin + f32(j) * edge);
+            }
+        }
+        if seen.cut {
+            sum.x += seen.density / glint_lobes_inside_disk(seen.mean, seen.covariance);
+        }
+    }
+    return sum;
 }
 
 // Offset of a quarter of a lobe from its mean, by its signs along the columns of the spread. Four quarters have the lobe's
@@ -206,11 +236,18 @@ fn glint_surface_texels(q: GlintSurfaceQuery, at: vec2i, edge: i32) -> vec2f {
 
 // Density and share of the block of a level's edge whose first texel lies `at` from the origin: as one block where that can be
 // read, else by its quarters and theirs, down to the finest level.
-fn glint_surface_block(q: GlintSurfaceQuery, level: u32, at: vec2i) -> vec2f {
+fn glint_surface_block(q: GlintSurfaceQuery, level: u32, block_place: vec2i, whole: bool) -> vec2f {
+    let of_level = glint_lobes_level(level);
+    let at = block_place * i32(of_level.cell_texels);
+    if whole {
+        let cell = vec2u(block_place);
+        let first = of_level.first_lobe + (cell.y * of_level.cells_x + cell.x) * q.map.lobes_per_cell;
+        return glint_lobes_cell(q.map, q.point, of_level, first, vec2f(at));
+    }
     let finest = i32(glint_lobes_level(0u).cell_texels);
     let frame = q.point.frame;
     let large = sqrt(frame.minor * frame.major) >= q.settings.owned_sigma;
-    let owned = f32(glint_lobes_level(level).cell_texels) >= q.settings.owned_from || large;
+    let owned = f32(of_level.cell_texels) >= q.settings.owned_from || large;
     var sum = vec2f(0.0);
     // Blocks of the finest level in the order of their quarters: those of a larger block follow each other.
     var block = 0u;

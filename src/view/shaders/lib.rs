@@ -70,7 +70,8 @@ modules! {
     "bind_ndf_maps" needs ["glint_ndf_maps", "bind_loads", "bind_table"];
     "query_ndf_maps" needs ["bind_ndf_maps"];
     "glint_lobes" needs ["glint_footprint", "glint_erf"];
-    "glint_lobes_levels" needs ["glint_lobes"];
+    "glint_lobes_boxes" needs ["glint_lobes"];
+    "glint_lobes_levels" needs ["glint_lobes_boxes"];
     "glint_lobes_packed" needs ["glint_lobes"];
     "glint_lobes_half" needs ["glint_lobes"];
     "glint_synthesis_paths" needs [];

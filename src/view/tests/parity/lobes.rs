@@ -30,14 +30,15 @@ pub struct Settings {
     max_cells: f32,
     max_boxes: f32,
     reach: f32,
+    cells_reach: f32,
     blend: f32,
 }
 
 impl Settings {
     pub fn of(settings: &QuerySettings) -> Settings {
-        let QuerySettings { cell_sigmas, boxes_until, cells_from, box_sigmas, max_cells, max_boxes, reach, blend } =
-            *settings;
-        Settings { cell_sigmas, boxes_until, cells_from, box_sigmas, max_cells, max_boxes, reach, blend }
+        let QuerySettings { cell_sigmas, boxes_until, cells_from, box_sigmas, max_cells, max_boxes, .. } = *settings;
+        let QuerySettings { reach, cells_reach, blend, .. } = *settings;
+        Settings { cell_sigmas, boxes_until, cells_from, box_sigmas, max_cells, max_boxes, reach, cells_reach, blend }
     }
 }
 
@@ -66,9 +67,9 @@ impl Place {
 struct Query {
     place: Place,
     settings: Settings,
+    end: u32,
 }
 
-/// A number whose logarithm is uniform.
 /// Two standard normal numbers.
 fn normals(rng: &mut impl Rng) -> Vec2 {
     let radius = (-2.0 * (1.0 - rng.random::<f32>()).ln()).sqrt();
@@ -114,6 +115,7 @@ pub fn settings(rng: &mut impl Rng) -> QuerySettings {
         max_cells: log_uniform(rng, 3.0, 40.0),
         max_boxes: log_uniform(rng, 16.0, 800.0),
         reach: 2.0 + 1.5 * rng.random::<f32>(),
+        cells_reach: 1.0 + 2.5 * rng.random::<f32>(),
         blend: log_uniform(rng, 0.05, 1.0),
     }
 }
@@ -155,7 +157,7 @@ fn answers(gpu: &Gpu, lobes: &BakedLobes, rng: &mut impl Rng, count: usize) -> V
             continue;
         }
         expected.push(gathered.density(place.s));
-        queries.push(Query { place, settings: Settings::of(&settings) });
+        queries.push(Query { place, settings: Settings::of(&settings), end: 0 });
     }
     println!("{count} queries of {drawn} are of no more than {MOST_LOBES} lobes");
     let source = glint_shaders::compose(&["query_lobes", modules(params)[0]]);
@@ -226,7 +228,7 @@ fn hard_maps_and_footprints_have_finite_densities() {
                     for s in [Vec2::ZERO, Vec2::X, Vec2::new(0.3, -0.2), Vec2::splat(2.0)] {
                         for settings in [QuerySettings::default(), QuerySettings::realtime()] {
                             let place = Place { mean, s, covariance, roughness: roughness as f32 };
-                            queries.push(Query { place, settings: Settings::of(&settings) });
+                            queries.push(Query { place, settings: Settings::of(&settings), end: 0 });
                         }
                     }
                 }

@@ -25,6 +25,7 @@ struct Query {
     owned_sigma: f32,
     box_range: f32,
     halves_until: f32,
+    end: u32,
 }
 
 fn surface_settings(rng: &mut impl Rng, whole_blocks: bool) -> SurfaceSettings {
@@ -69,6 +70,7 @@ fn answers(gpu: &Gpu, surface: &Surface, rng: &mut impl Rng, whole_blocks: bool,
             owned_sigma,
             box_range,
             halves_until,
+            end: 0,
         });
     }
     println!("{count} queries of {drawn} are of no more than {MOST_LOBES} lobes");
