@@ -46,7 +46,7 @@ What bounds each, a pixel:
 | --- | --- | --- |
 | smooth | none | an exponential |
 | dictionary | two 4-byte loads a cell, for all cells under the footprint on two levels | a cell: its hash, three rounds of integer products in a row; a rotation |
-| NDF maps | a tile: nine texels in one 16-byte load, two 16-byte loads of its place; a sub-region of random placement: two 16-byte loads of noise, two of its transform, two of levels; one word of a mask outside the highlight | a tile: two splines; a box: four error functions |
+| NDF maps | a tile: nine texels in one 16-byte load, two 16-byte loads of its place; random placement: four places or more, each one tile, and for it one 16-byte load of its owner and two of its transform; one word of a mask outside the highlight | a tile: two splines; a box: four error functions |
 | lobes, surfaces | one 8-byte load a bilinear patch of the finest level and one more for each row of them, one 16-byte load a lobe of the others; surfaces: an offset and paths of seams besides, of one patch for a footprint's boxes and of one for each cell | a lobe: a 2 × 2 inverse, two exponentials |
 | environment | smooth: a cube and a table; glints: one cube more for every four levels | four hashes for a word; a word and a binomial draw for each level but one, and one word more |
 | area light | as plain LTC: one map (two with directions), two tables | a power and two roots more than plain LTC, once a lobe |

@@ -13,7 +13,7 @@ use glint_formats::ndf_maps::TransformRecord;
 /// Tiles may be four times as large, against the footprint, as where accuracy is measured: an eye sees no difference,
 /// and a footprint needs some ten tiles in place of hundreds.
 const SETTINGS: EvalSettings =
-    EvalSettings { tile_sigmas: 4.0, lobe_sigmas: 1.0, max_terms: 32, splits: 0, reach: 2.8 };
+    EvalSettings { tile_sigmas: 4.0, lobe_sigmas: 1.0, max_terms: 32, splits: 0, reach: 2.8, probes: 0 };
 /// Mean density of a placed example below which nothing is looked up: even its rare glints would be faint.
 const FAINT: f32 = 0.004;
 

@@ -6,6 +6,7 @@
 //! same by definition, in f64, and [`measure`] is the difference.
 
 pub mod bake;
+mod cells;
 mod disk;
 mod ellipse;
 pub mod eval;
@@ -13,6 +14,7 @@ mod fine_grid;
 pub mod measure;
 pub mod micro_normals;
 pub mod placement;
+mod probes;
 pub mod reference;
 pub mod reference_surface;
 pub mod sections;

@@ -6,6 +6,7 @@
 //! for its owner; a footprint over many cells sees the top tile under each transform, by the share of cells that use it,
 //! where the paper visits every example.
 
+use super::cells::Cells;
 use super::ellipse::{EVERYWHERE, Ellipse, FINEST_TEXELS, Grid, REACH, Slot, for_each_cell, for_each_tile};
 use super::eval::{LobeTerm, Material, Terms, TileTerm, matrix};
 use crate::footprint::Footprint;
@@ -42,11 +43,13 @@ pub struct EvalSettings {
     pub splits: u32,
     /// Pieces lie within this many standard deviations of the footprint's centre; 2 % of its mass is beyond 2.8, 14 % beyond 2.
     pub reach: f32,
+    /// Places along a footprint's minor axis where a stochastic surface is seen, each as one tile; 0 for all tiles of all sub-regions.
+    pub probes: u32,
 }
 
 impl Default for EvalSettings {
     fn default() -> EvalSettings {
-        EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 0.75, max_terms: 128, splits: 1, reach: REACH }
+        EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 0.75, max_terms: 128, splits: 1, reach: REACH, probes: 0 }
     }
 }
 
@@ -61,7 +64,7 @@ enum Detail {
 
 /// Terms with the sum of their shares.
 #[derive(Default)]
-struct Gathered {
+pub(super) struct Gathered {
     terms: Terms,
     share: f32,
 }
@@ -158,6 +161,14 @@ impl Material {
         if ellipse.minor >= CLASS_SIGMA_CELLS * cells.edge || regions > MAX_REGIONS.min(settings.max_terms as f32) {
             return self.gather_classes(&ellipse, cells, settings, gathered);
         }
+        if settings.probes > 0 {
+            // As the example of most texels sees it, so that those seen as boxes are few.
+            let most = self.most_example_texels();
+            let seen = Ellipse { major: most * ellipse.major, minor: most * ellipse.minor, ..ellipse };
+            if matches!(self.detail_for(&seen, settings), Detail::Tiles(_)) {
+                return self.gather_probes(&ellipse, cells, settings, gathered);
+            }
+        }
         // A sub-region counts when its centre is near the footprint, widened so that a point reaches its corners.
         for_each_cell(
             &ellipse.widened(region * 1.2),
@@ -196,7 +207,12 @@ impl Material {
             extent: to_local.x_axis.abs() + to_local.y_axis.abs(),
             class,
         };
-        match self.detail_for(&view.ellipse, settings) {
+        let detail = match self.detail_for(&view.ellipse, settings) {
+            // Next to a transform that shears, or one of more texels.
+            Detail::Tiles(_) if settings.probes > 0 => Detail::Boxes(LOBE_TEXELS),
+            detail => detail,
+        };
+        match detail {
             Detail::Tiles(level)
                 if level.first_tile == self.top_tile() && footprint.minor >= WHOLE_REGION_SIGMA * region =>
             {
@@ -250,18 +266,6 @@ impl Material {
         }
     }
 
-    /// Owner of a sub-region: palette entry, centre on the surface, example point that lies at the centre.
-    fn owner_of(&self, region: IVec2, cells: Cells) -> (u32, Vec2, Vec2) {
-        let (cell, quadrant) = (region >> 1, region & 1);
-        let own = self.placement.noise[cells.index(cell)];
-        let neighbour = own.class_and_owners >> (16 + 4 * (quadrant.x + 2 * quadrant.y)) & 0xf;
-        let cell = cell + IVec2::new((neighbour % 3) as i32 - 1, (neighbour / 3) as i32 - 1);
-        let owner = self.placement.noise[cells.index(cell)];
-        let unorm = |v: u32| Vec2::new((v & 0xffff) as f32, (v >> 16) as f32) / 65535.0;
-        let centre = (cell.as_vec2() + unorm(owner.centre)) * cells.edge;
-        (owner.class_and_owners & 0xff, centre, unorm(owner.offset) * self.size())
-    }
-
     /// The top tile under every transform, by the share of cells that use it: of blocks in the full reach, else there might be none.
     fn gather_classes(&self, ellipse: &Ellipse, cells: Cells, settings: EvalSettings, gathered: &mut Gathered) {
         let most = MOST_OF_TERMS * settings.max_terms as f32;
@@ -306,7 +310,7 @@ impl Material {
         }
     }
 
-    fn position_to_local(&self, class: u32) -> Mat2 {
+    pub(super) fn position_to_local(&self, class: u32) -> Mat2 {
         matrix(self.placement.palette[class as usize].position_to_local)
     }
 
@@ -314,7 +318,7 @@ impl Material {
         DVec2::new(self.maps.params.width as f64, self.maps.params.height as f64)
     }
 
-    fn size(&self) -> Vec2 {
+    pub(super) fn size(&self) -> Vec2 {
         self.example_size().as_vec2()
     }
 
@@ -324,7 +328,7 @@ impl Material {
 }
 
 impl Gathered {
-    fn add_tile(&mut self, term: TileTerm) {
+    pub(super) fn add_tile(&mut self, term: TileTerm) {
         self.share += term.weight;
         self.terms.tiles.push(term);
     }
@@ -359,32 +363,6 @@ impl RegionView {
     fn span(&self, edge: f32) -> (Vec2, Vec2) {
         let reach = self.extent * (self.half + 0.5 * edge * self.scale);
         (self.middle - reach, self.middle + reach)
-    }
-}
-
-/// Grid of a stochastic placement as a footprint sees it: positions are relative to the corner of the base cell, which keeps
-/// their digits far from the origin.
-#[derive(Clone, Copy)]
-struct Cells {
-    count: i32,
-    edge: f32,
-    /// The cell that holds the footprint's centre, within the first period.
-    base: IVec2,
-    /// The footprint's centre.
-    mean: Vec2,
-}
-
-impl Cells {
-    fn around(mean: DVec2, count: i32, edge: f32) -> Cells {
-        let cell = (mean / edge as f64).floor();
-        let base = cell - (cell / count as f64).floor() * count as f64;
-        Cells { count, edge, base: base.as_ivec2(), mean: (mean - cell * edge as f64).as_vec2() }
-    }
-
-    /// Noise texel of a cell relative to the base.
-    fn index(&self, cell: IVec2) -> usize {
-        let at = self.base + cell;
-        (at.y.rem_euclid(self.count) * self.count + at.x.rem_euclid(self.count)) as usize
     }
 }
 

@@ -64,10 +64,10 @@ pub struct Cost {
 
 /// Run-time settings from fast to accurate; the third is the default.
 const DIAL: [EvalSettings; 4] = [
-    EvalSettings { tile_sigmas: 4.0, lobe_sigmas: 1.0, max_terms: 32, splits: 0, reach: 2.8 },
-    EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 1.0, max_terms: 64, splits: 0, reach: 2.8 },
-    EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 0.75, max_terms: 128, splits: 1, reach: 2.8 },
-    EvalSettings { tile_sigmas: 0.5, lobe_sigmas: 0.5, max_terms: 2048, splits: 2, reach: 2.8 },
+    EvalSettings { tile_sigmas: 4.0, lobe_sigmas: 1.0, max_terms: 32, splits: 0, reach: 2.8, probes: 0 },
+    EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 1.0, max_terms: 64, splits: 0, reach: 2.8, probes: 0 },
+    EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 0.75, max_terms: 128, splits: 1, reach: 2.8, probes: 0 },
+    EvalSettings { tile_sigmas: 0.5, lobe_sigmas: 0.5, max_terms: 2048, splits: 2, reach: 2.8, probes: 0 },
 ];
 
 /// Measures an example with `count` footprints a size.

@@ -6,7 +6,7 @@ mod reach;
 use crate::gpu::{Gpu, GpuError, ResourceSet, Resources, TABLE_WIDTH};
 use bytemuck::{Pod, Zeroable};
 use glint_bake_core::ndf_maps::eval::Material;
-use glint_formats::ndf_maps::{DensityStorage, PlacementKind, Wrap};
+use glint_formats::ndf_maps::{DensityStorage, NoiseTexel, PlacementKind, Wrap};
 
 /// `GlintNdfMaterial`.
 #[repr(C)]
@@ -30,8 +30,7 @@ struct MaterialUniform {
     reach_words: u32,
     blocks: u32,
     few_tiles: u32,
-    /// Layers begin at multiples of 16 bytes.
-    unused: u32,
+    most_texels: f32,
 }
 
 /// `NdfMapsData`.
@@ -112,16 +111,30 @@ impl Tables {
             level_records: self.record(bytemuck::cast_slice(&levels)),
             tile_records: append(&mut self.tiles, 16, bytemuck::cast_slice(&tiles)),
             palette_records: self.record(bytemuck::cast_slice(&placement.palette)),
-            noise_records: append(&mut self.noise, 16, bytemuck::cast_slice(&placement.noise)),
+            noise_records: append(&mut self.noise, 16, bytemuck::cast_slice(&owners(&placement.noise, cells))),
             density_words: self.word(if blocks.is_some() { &[] } else { &maps.density }),
             normal_words: self.word(bytemuck::cast_slice(&maps.normals)),
             class_words: self.word(&placement.classes),
             reach_words: self.word(bytemuck::cast_slice(&reach::mask(material))),
             blocks: u32::from(blocks.is_some()),
             few_tiles: 0,
-            unused: 0,
+            most_texels: material.most_example_texels(),
         }
     }
+}
+
+/// What every sub-region of `cells` by `cells` shows, row by row: the noise texel of its owner, with which of the 3 × 3 cells around
+/// its own that is in place of that one's owners. One load finds what would take two, the second by what the first has.
+fn owners(noise: &[NoiseTexel], cells: u32) -> Vec<NoiseTexel> {
+    let owner = |k: u32| {
+        let (x, y) = (k % (2 * cells), k / (2 * cells));
+        let own = noise[(y / 2 * cells + x / 2) as usize];
+        let neighbour = own.class_and_owners >> (16 + 4 * (x % 2 + 2 * (y % 2))) & 0xf;
+        let cell = |at: u32, step: u32| (at / 2 + cells + step - 1) % cells;
+        let owner = noise[(cell(y, neighbour / 3) * cells + cell(x, neighbour % 3)) as usize];
+        NoiseTexel { class_and_owners: owner.class_and_owners & 0xff | neighbour << 16, ..owner }
+    };
+    (0..4 * cells * cells).map(owner).collect()
 }
 
 /// Uploads a material, or the base of a layered one with its clear coat and that one's reflectance at normal incidence.

@@ -49,7 +49,8 @@ struct GlintNdfMaterial {
     tile_records: u32,
     // The palette (section PLPL), two each.
     palette_records: u32,
-    // The noise map (section PLNO), one a cell.
+    // The noise map, one a sub-region: that of the cell that owns it (section PLNO), with which of the 3 x 3 cells around that is in
+    // place of its own sub-regions' owners.
     noise_records: u32,
     // First word of: the density (section NMDE).
     density_words: u32,
@@ -63,6 +64,8 @@ struct GlintNdfMaterial {
     blocks: u32,
     // 1 where the tiles are among the records of the levels and the palette, 0 where they have a table.
     few_tiles: u32,
+    // Example texels a surface texel, by area, under the transform of the palette that has most.
+    most_texels: f32,
 }
 
 // Choice between speed and accuracy at run time.
@@ -78,6 +81,8 @@ struct GlintNdfSettings {
     // Pieces lie within this many standard deviations of the footprint's centre, each widened by its size; what lies farther out is
     // left out: 2 % of the mass at 2.8, 14 % at 2.
     reach: f32,
+    // Places along the minor axis where a stochastic surface is seen, each as one tile; 0 for all tiles of all sub-regions.
+    probes: u32,
 }
 
 // A sum over pieces of a footprint, not yet divided by its share.

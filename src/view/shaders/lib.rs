@@ -65,7 +65,10 @@ modules! {
     "glint_ndf_lobes" needs ["glint_ndf_material", "glint_erf"];
     "glint_ndf_view" needs ["glint_ndf_ellipse", "glint_ndf_tiles", "glint_ndf_lobes"];
     "glint_ndf_tiled" needs ["glint_ndf_view"];
-    "glint_ndf_stochastic" needs ["glint_ndf_view"];
+    "glint_ndf_regions" needs ["glint_ndf_view"];
+    "glint_ndf_classes" needs ["glint_ndf_regions"];
+    "glint_ndf_probes" needs ["glint_ndf_regions"];
+    "glint_ndf_stochastic" needs ["glint_ndf_classes", "glint_ndf_probes"];
     "glint_ndf_maps" needs ["glint_ndf_tiled", "glint_ndf_stochastic"];
     "bind_ndf_maps" needs ["glint_ndf_maps", "bind_loads", "bind_table"];
     "query_ndf_maps" needs ["bind_ndf_maps"];

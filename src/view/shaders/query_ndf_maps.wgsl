@@ -14,7 +14,7 @@ struct NdfMapsQuery {
     reach: f32,
     // Index of the material.
     layer: u32,
-    unused: u32,
+    probes: u32,
 }
 
 struct NdfMapsAnswer {
@@ -36,7 +36,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let q = queries[id.x];
     let material = ndf_maps.layers[min(q.layer, 1u)].material;
-    let settings = GlintNdfSettings(q.tile_sigmas, q.lobe_sigmas, q.max_terms, q.splits, q.reach);
+    let settings = GlintNdfSettings(q.tile_sigmas, q.lobe_sigmas, q.max_terms, q.splits, q.reach, q.probes);
     let sum = glint_ndf_density(material, GlintFootprint(q.mean, q.xx, q.xy, q.yy), settings, q.s);
     answers[id.x] = NdfMapsAnswer(
         sum.density,

@@ -21,10 +21,11 @@ override NDF_MAPS_ACCURATE: bool = true;
 
 fn shade_ndf_settings() -> GlintNdfSettings {
     if NDF_MAPS_ACCURATE && (material.switches & SHADE_NDF_ACCURATE) != 0u {
-        return GlintNdfSettings(1.0, 0.75, 128u, 1u, 2.8);
+        return GlintNdfSettings(1.0, 0.75, 128u, 1u, 2.8, 0u);
     }
-    // Tiles four times as large against the footprint, and a narrower one: docs/viewer-report.md has the error.
-    return GlintNdfSettings(4.0, 1.0, 32u, 0u, 2.0);
+    // Tiles four times as large against the footprint, and a narrower one; of random placement two by two places or more, each as
+    // one tile: docs/viewer-report.md has the error.
+    return GlintNdfSettings(4.0, 1.0, 32u, 0u, 2.0, 2u);
 }
 
 fn shade_ndf_material(layer: u32) -> GlintNdfMaterial {
