@@ -26,8 +26,10 @@ const SURFACE: u32 = 4096;
 /// Footprints; those above 14 texels do not fit inside a patch.
 const SIGMAS: [f64; 7] = [0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
 const INSIDE_UNTIL: f64 = 14.0;
-/// Most footprints of these: each sees as much as hundreds of small ones.
+/// Most footprints of those above: each sees as much as hundreds of small ones.
 const WIDE: u32 = 8;
+/// Up to this size four times as many: each sees a few texels, and they differ much.
+const SMALL: f64 = 2.0;
 /// Bins of the reference between points at which densities are compared: two thirds of σ_r.
 const STRIDE: usize = 4;
 const ROUGHNESS: f64 = 0.02;
@@ -51,7 +53,7 @@ fn main() {
     println!("Written by `just report`; do not edit.\n");
     println!(
         "Samples of {SAMPLE}² texels that do not repeat, surfaces of {SURFACE}² or without end, options' defaults. E₁ = ∫|D̂ − D| / \
-         ∫D in per cent, mean over {footprints} seeded footprints centred on seams ({WIDE} where σ > {INSIDE_UNTIL}), and as many inside patches, ±2 σ \
+         ∫D in per cent, mean over {footprints} seeded footprints centred on seams (four times as many where σ ≤ {SMALL}, {WIDE} where σ > {INSIDE_UNTIL}), and as many inside patches, ±2 σ \
          clear of seams; D of the assembled map, in f64; σ in texels, σ_r = {ROUGHNESS}. Lobes a query, on average, on seams.\n"
     );
     for target in [Target::Patches { width: SURFACE, height: SURFACE }, Target::Unbounded { colours: 4, variants: 2 }] {
@@ -89,7 +91,11 @@ fn rows(name: &str, sample: &NormalMap, target: Target, footprints: u32) {
         Target::Unbounded { .. } => "without end".to_owned(),
     };
     for sigma in SIGMAS {
-        let footprints = if sigma < INSIDE_UNTIL { footprints } else { footprints.min(WIDE) };
+        let footprints = match sigma {
+            small if small <= SMALL => 4 * footprints,
+            inside if inside < INSIDE_UNTIL => footprints,
+            _ => footprints.min(WIDE),
+        };
         let measured = |inside| {
             let places = seam_footprints(&surface, sigma, footprints, SEED, inside);
             exact.errors(&[Measured::Chosen(SurfaceSettings::default())], &places, STRIDE)[0]
