@@ -5,9 +5,10 @@ use crate::adapter::gpu;
 use crate::subjects::{camera, index_of, mean_radiance, subjects, wall};
 use glint_view::render::{Compare, Shown, Side, View};
 
-/// Frames of the zoom, each this much farther away.
-const FRAMES: u32 = 48;
-const STEP: f32 = 1.05;
+/// Frames of the zoom, each this much farther away: a twentieth of the picture is new in each, which alone changes the mean where
+/// few features are in view.
+const FRAMES: u32 = 96;
+const STEP: f32 = 1.025;
 
 #[test]
 fn a_slow_zoom_does_not_pop() {
@@ -36,6 +37,6 @@ fn a_slow_zoom_does_not_pop() {
             before = Some(share);
         }
         println!("{name}: radiance changes by at most {:.1} % from frame to frame", 100.0 * worst);
-        assert!(worst < 0.08, "{name}: {worst}");
+        assert!(worst < 0.06, "{name}: {worst}");
     }
 }
