@@ -26,8 +26,8 @@ demo *ARGS:
 view *ARGS:
     cargo run --release --features view --bin glint-view -- {{ARGS}}
 
-# Static programs for any Linux of this processor, without shared libraries, into target/TRIPLE/release. At a fixed address, so that
-# they need not be relocated, which would touch 300 KiB.
+# Static programs for any Linux of this processor, without shared libraries, into target/TRIPLE/release. At a fixed address, as
+# relocation would touch pages that are not used otherwise.
 dist TRIPLE="x86_64-unknown-linux-gnu":
     RUSTFLAGS="-C target-feature=+crt-static -C relocation-model=static" cargo build --release --locked --target {{TRIPLE}}
 
