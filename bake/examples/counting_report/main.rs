@@ -32,7 +32,11 @@ fn main() {
     };
     println!("# Counting: error and cost\n");
     println!("Written by `just report`; do not edit. The plot is [counting-report.svg](counting-report.svg).");
-    println!("Release build, lto {LTO}.\n");
+    if cfg!(debug_assertions) {
+        println!("Development build, the library optimised.\n");
+    } else {
+        println!("Release build, lto {LTO}.\n");
+    }
     let all = variants();
     by_trials(&all[0], &all[1]);
     front(&all);

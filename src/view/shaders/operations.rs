@@ -17,8 +17,9 @@ const COUNTER: &str = "bound_operations";
 const SPECIAL: u32 = 4;
 
 /// A program, given as WGSL, that adds to `bound_operations` as it runs: for each component of a vector, sums, products, comparisons,
-/// logic, selections and conversions count as one, divisions, roots, exponentials, logarithms and angles as 4. Loads and stores
-/// count nothing, nor does the choosing of components.
+/// logic, selections and conversions count as one, divisions, roots, exponentials, logarithms and angles as 4, other functions as
+/// what they are made of. Loads and stores count nothing, nor do the choosing of components, signs and the range 0 to 1, which
+/// instructions have for their operands and results.
 ///
 /// # Errors
 /// What naga finds wrong with the text, or that it has no such variable.
@@ -28,6 +29,7 @@ pub fn counted(source: &str) -> Result<Module, String> {
     let info = validator.validate(&module).map_err(|e| e.emit_to_string(source))?;
     let counter = module.global_variables.iter().find(|(_, variable)| variable.name.as_deref() == Some(COUNTER));
     let (counter, _) = counter.ok_or_else(|| format!("the program has no {COUNTER}"))?;
+    // What expressions are is asked while functions are changed.
     let types = module.clone();
     for (handle, function) in module.functions.iter_mut() {
         count(function, &info[handle], &types, counter);
