@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use glint_bake::input::environment::load_environment;
+use glint_bake_core::counting::normal::unit_from_bits;
 use glint_bake_core::environment::glints::{
     GlintChances, GlintSurface, environment_glints, glint_chances, glint_relative_variance,
 };
@@ -11,7 +12,7 @@ use glint_bake_core::environment::reference_glints::{FacetMoments, FacetSurface}
 use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, bake};
 use glint_bake_core::progress::Silent;
 use glint_bake_core::rng::ItemRng;
-use glint_formats::environment::{LevelChoice, MAX_LEVELS};
+use glint_formats::environment::LevelChoice;
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -184,8 +185,8 @@ fn drawn_lot(environment: &Environment, surface: &GlintSurface, smooth: f64) -> 
     let mut values: Vec<f64> = (0..PATCHES)
         .map(|draw| {
             let mut rng = ItemRng::new(1, PURPOSE, draw);
-            let bits: [u32; MAX_LEVELS] = std::array::from_fn(|_| rng.bits());
-            brightness(environment_glints(environment, surface, &bits)) / smooth
+            let words = std::array::from_fn(|_| unit_from_bits(rng.bits()));
+            brightness(environment_glints(environment, surface, &words)) / smooth
         })
         .collect();
     values.sort_by(f64::total_cmp);

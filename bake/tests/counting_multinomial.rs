@@ -2,11 +2,12 @@
 
 use glint_bake_core::counting::binomial::whole_count;
 use glint_bake_core::counting::multinomial::tree_leaves;
+use glint_bake_core::counting::normal::unit_from_bits;
 use glint_bake_core::counting::{Count, MAX_LEVELS, multinomial};
 use glint_bake_core::rng::ItemRng;
 
-fn words(rng: &mut ItemRng) -> [u32; MAX_LEVELS] {
-    std::array::from_fn(|_| rng.bits())
+fn words(rng: &mut ItemRng) -> [f32; MAX_LEVELS] {
+    std::array::from_fn(|_| unit_from_bits(rng.bits()))
 }
 
 /// Weights of `levels` levels that span six decades, not in order, not adding up to 1.
@@ -25,18 +26,29 @@ fn counts_are_whole_and_add_up() {
         let all = weights(levels);
         for n in [0.0f32, 0.02, 0.9, 1.0, 1.5, 2.0, 7.3, 20.0, 1e3, 12345.6, 16_777_216.0, 1e10, 1e16] {
             for _ in 0..100 {
-                let bits = words(&mut rng);
-                let counts = multinomial(n, &all, levels, &bits);
+                let drawn = words(&mut rng);
+                let counts = multinomial(n, &all, levels, &drawn);
                 let counts = counts.map(f64::from);
                 let sum: f64 = counts.iter().sum();
                 let rounding = if n <= 1e13 { 0.0 } else { f64::from(n) * levels as f64 * 2f64.powi(-47) };
-                let whole = f64::from(whole_count(n, bits[0]));
+                let whole = f64::from(whole_count(n, drawn[0]));
                 assert!((sum - whole).abs() <= rounding, "K {levels} N {n}: {counts:?}");
                 assert!(counts.iter().all(|c| *c >= 0.0 && c.fract() == 0.0));
                 assert!(counts[levels..].iter().all(|c| *c == 0.0), "K {levels}: {counts:?}");
             }
         }
     }
+}
+
+/// Chance of at least `least` hits where they are a Poisson number of this mean.
+fn at_least(mean: f64, least: f64) -> f64 {
+    let mut chance = (-mean).exp();
+    let mut below = 0.0;
+    for k in 0..least as u32 {
+        below += chance;
+        chance *= mean / f64::from(k + 1);
+    }
+    1.0 - below
 }
 
 #[test]
@@ -79,9 +91,16 @@ fn means_and_covariances_are_the_multinomials() {
                     let z = (found - exact) / error;
                     assert!(z.abs() < 5.0, "K {levels} N {n} levels {i} {j}: {found} {exact} z {z}");
                 }
-                if i == j {
+                let hits = trials * chance[i] * count;
+                if i == j && hits > 50.0 {
                     let z = shift[i] / (exact * count).sqrt();
                     assert!(z.abs() < 4.5, "K {levels} N {n} level {i}: z {z}");
+                }
+                if i == j && hits <= 50.0 {
+                    // As rare as 4.5 standard deviations; none at all may be likely.
+                    let seen = (shift[i] + hits).round();
+                    let tail = at_least(hits, seen).min(1.0 - at_least(hits, seen + 1.0));
+                    assert!(tail > 3e-6, "K {levels} N {n} level {i}: {seen} hits, expected {hits}");
                 }
             }
         }
@@ -172,22 +191,22 @@ fn a_rare_level_keeps_its_mean_anywhere() {
 fn degenerate_weights() {
     let mut rng = ItemRng::new(23, 5, 0);
     for _ in 0..1000 {
-        let bits = words(&mut rng);
+        let drawn = words(&mut rng);
         for levels in [1, 2, 3, 8, 16] {
             for only in 0..levels {
                 let mut all = [0.0; MAX_LEVELS];
                 all[only] = 1e-30;
-                let counts = multinomial(37.0, &all, levels, &bits).map(Count::value);
+                let counts = multinomial(37.0, &all, levels, &drawn).map(Count::value);
                 assert_eq!(counts[only], 37.0);
                 assert_eq!(counts.iter().sum::<f32>(), 37.0);
             }
-            let black = multinomial(37.0, &[0.0; MAX_LEVELS], levels, &bits).map(Count::value);
+            let black = multinomial(37.0, &[0.0; MAX_LEVELS], levels, &drawn).map(Count::value);
             assert_eq!((black[0], black.iter().sum::<f32>()), (37.0, 37.0));
-            let invalid = multinomial(5.0, &[f32::NAN; MAX_LEVELS], levels, &bits).map(Count::value);
+            let invalid = multinomial(5.0, &[f32::NAN; MAX_LEVELS], levels, &drawn).map(Count::value);
             assert_eq!(invalid.iter().sum::<f32>(), 5.0);
         }
-        assert_eq!(multinomial(0.0, &[1.0; MAX_LEVELS], 16, &bits), [Count::default(); MAX_LEVELS]);
-        assert_eq!(multinomial(1e16, &[1.0; MAX_LEVELS], 1, &bits)[0], Count::from(1e16));
+        assert_eq!(multinomial(0.0, &[1.0; MAX_LEVELS], 16, &drawn), [Count::default(); MAX_LEVELS]);
+        assert_eq!(multinomial(1e16, &[1.0; MAX_LEVELS], 1, &drawn)[0], Count::from(1e16));
     }
     assert_eq!([1, 2, 3, 4, 5, 8, 9, 16].map(tree_leaves), [1, 2, 4, 4, 8, 8, 16, 16]);
 }
@@ -199,11 +218,11 @@ fn only_the_words_of_the_tree_are_read() {
     for levels in 1..=MAX_LEVELS {
         let leaves = tree_leaves(levels);
         for _ in 0..200 {
-            let bits = words(&mut rng);
+            let drawn = words(&mut rng);
             let mut other = words(&mut rng);
-            other[..leaves].copy_from_slice(&bits[..leaves]);
+            other[..leaves].copy_from_slice(&drawn[..leaves]);
             let all = weights(levels);
-            assert_eq!(multinomial(9.5, &all, levels, &bits), multinomial(9.5, &all, levels, &other));
+            assert_eq!(multinomial(9.5, &all, levels, &drawn), multinomial(9.5, &all, levels, &other));
         }
     }
 }

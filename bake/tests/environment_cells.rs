@@ -6,10 +6,6 @@ use glint_bake_core::environment::cells::{
 };
 use glint_bake_core::rng::ItemRng;
 
-fn unit(word: u32) -> f64 {
-    (f64::from(word) + 0.5) / 4_294_967_296.0
-}
-
 /// A word is 1 − ∏ (1 − w x), x the least h / w: all of its digits where it is small, seven places where it is not.
 #[test]
 fn words_are_the_race_of_the_corners_to_their_digits() {
@@ -20,11 +16,11 @@ fn words_are_the_race_of_the_corners_to_their_digits() {
         let cells = surface_cells(position, 4.0 * rng.unit() as f32 - 2.0, seed);
         let weights = cells.inverse_weights.map(|inverse| 1.0 / f64::from(inverse) / 4_294_967_296.0);
         assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-6, "{cells:?}");
-        let numbers = cells.states.map(|state| unit(corner_bits(state, 1)));
+        let numbers = cells.states.map(|state| (f64::from(corner_bits(state, 1)) + 0.5) / 4_294_967_296.0);
         let all = numbers.iter().zip(weights).map(|(h, w)| (h / w, w));
         let (least, weight) = all.fold((f64::INFINITY, 1.0), |a, b| if b.0 < a.0 { b } else { a });
         let exact = -libm::expm1(weights.iter().map(|w| libm::log1p(-w * least)).sum::<f64>());
-        let found = unit(surface_word(&cells, 1));
+        let found = f64::from(surface_word(&cells, 1));
         // Half a step of the corner's word, one of the place's, and what stands for the former on average.
         let steps = (0.5 / weight + 1.0 + 2.0) / 4_294_967_296.0;
         assert!((found - exact).abs() < 1e-6 * exact + steps, "{cells:?}: {found} {exact}");
@@ -53,7 +49,7 @@ fn words_are_uniform_at_corners_between_them_and_between_levels() {
         (Vec2::new(123.4, 9.1), 3.01),
     ] {
         let words: Vec<f64> =
-            (0..SEEDS).map(|seed| unit(surface_word(&surface_cells(position, lod, seed), 3))).collect();
+            (0..SEEDS).map(|seed| f64::from(surface_word(&surface_cells(position, lod, seed), 3))).collect();
         let rare = words.iter().filter(|u| **u < 1e-3).count() as f64 / (f64::from(SEEDS) * 1e-3);
         let distance = distance_from_uniform(words);
         assert!(distance < most, "{position} {lod}: {distance}, expected {most} at most");
@@ -68,7 +64,7 @@ fn the_words_of_a_place_do_not_depend_on_each_other() {
     let mut sums = [[0.0; 4]; 4];
     for seed in 0..SEEDS {
         let cells = surface_cells(Vec2::new(0.4, 0.3), 0.4, seed);
-        let words = surface_words(&cells, 4).map(|word| unit(word) - 0.5);
+        let words = surface_words(&cells, 4).map(|word| f64::from(word) - 0.5);
         (0..4).for_each(|i| (0..4).for_each(|j| sums[i][j] += 12.0 * words[i] * words[j] / f64::from(SEEDS)));
     }
     for (i, row) in sums.iter().enumerate() {
@@ -91,7 +87,7 @@ fn words_change_gradually_with_place_and_footprint() {
         let position = Vec2::new(rng.unit() as f32, rng.unit() as f32) * 40.0;
         let lod = 4.0 * rng.unit() as f32 - 2.0;
         let edge = lod.exp2();
-        let word = |position, lod| unit(surface_word(&surface_cells(position, lod, seed), 1));
+        let word = |position, lod| f64::from(surface_word(&surface_cells(position, lod, seed), 1));
         let here = word(position, lod);
         let there = (word(position + Vec2::new(STEP * edge, 0.0), lod) - here).abs();
         moved += there / f64::from(PLACES);
@@ -109,7 +105,7 @@ fn words_change_gradually_with_place_and_footprint() {
 fn rare_words_are_spots_of_about_a_cell() {
     let (mut met, mut kept) = (0, 0);
     for seed in 0..200_000 {
-        let word = |x: f32| unit(surface_word(&surface_cells(Vec2::new(x, 0.37), 0.0, seed), 2));
+        let word = |x: f32| f64::from(surface_word(&surface_cells(Vec2::new(x, 0.37), 0.0, seed), 2));
         if word(0.21) < 1e-3 {
             met += 1;
             kept += u32::from(word(0.31) < 1e-3);

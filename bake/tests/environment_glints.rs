@@ -2,6 +2,7 @@
 //! against explicit facets.
 
 use glam::{DVec3, Vec3};
+use glint_bake_core::counting::normal::unit_from_bits;
 use glint_bake_core::environment::eval::environment_radiance;
 use glint_bake_core::environment::glints::{GlintSurface, environment_glints, glint_chances, glint_relative_variance};
 use glint_bake_core::environment::image::{direction, luminance};
@@ -64,9 +65,9 @@ fn drawn_from(surface: &FacetSurface, facets: f32) -> GlintSurface {
     }
 }
 
-fn bits(seed: u64, draw: u32) -> [u32; MAX_LEVELS] {
+fn words(seed: u64, draw: u32) -> [f32; MAX_LEVELS] {
     let mut rng = ItemRng::new(seed, 99, draw);
-    std::array::from_fn(|_| rng.bits())
+    std::array::from_fn(|_| unit_from_bits(rng.bits()))
 }
 
 fn brightness(rgb: [f32; 3]) -> f64 {
@@ -119,7 +120,7 @@ fn draws_have_the_mean_and_variance_they_claim() {
         let chances = glint_chances(&environment, &surface);
         let smooth = brightness(chances.smooth);
         let values: Vec<f64> =
-            (0..20_000).map(|draw| brightness(environment_glints(&environment, &surface, &bits(7, draw)))).collect();
+            (0..20_000).map(|draw| brightness(environment_glints(&environment, &surface, &words(7, draw)))).collect();
         let [mean, variance, mean_error, variance_error] = statistics(&values);
         let expected = f64::from(glint_relative_variance(&chances, count)) * smooth * smooth;
         let (z, z2) = ((mean - smooth) / mean_error, (variance - expected) / variance_error);
@@ -136,7 +137,7 @@ fn more_facets_converge_to_the_smooth_reflection() {
         let surface = drawn_from(&facets(30.0, 0.3), count);
         let smooth = brightness(glint_chances(&environment, &surface).smooth);
         let values: Vec<f64> = (0..500)
-            .map(|draw| brightness(environment_glints(&environment, &surface, &bits(8, draw))) / smooth)
+            .map(|draw| brightness(environment_glints(&environment, &surface, &words(8, draw))) / smooth)
             .collect();
         let [_, variance, _, _] = statistics(&values);
         assert!(variance < 0.1 * last, "{count} facets: variance {variance} after {last}");
@@ -176,7 +177,7 @@ fn red_and_blue_lamps_make_red_and_blue_glints() {
         let surface = GlintSurface { normal: towards, view: towards, alpha: 0.1, f0: 0.9, facets: 4.0 };
         assert!(environment_radiance(&environment, towards, 0.1)[bright] > 1.0);
         let sum = (0..200)
-            .map(|draw| environment_glints(&environment, &surface, &bits(9, draw)))
+            .map(|draw| environment_glints(&environment, &surface, &words(9, draw)))
             .fold([0.0; 3], |a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]]);
         assert!(sum[bright] > 50.0 * sum[dark], "towards {towards}: {sum:?}");
     }
@@ -198,7 +199,7 @@ fn hard_surfaces_stay_finite() {
                     for cos_o in [0.0, 1e-3, 1.0f32] {
                         let view = Vec3::new((1.0 - cos_o * cos_o).sqrt(), 0.0, cos_o);
                         let surface = GlintSurface { normal: Vec3::Z, view, alpha, f0: 0.04, facets };
-                        let rgb = environment_glints(&environment, &surface, &bits(3, 1));
+                        let rgb = environment_glints(&environment, &surface, &words(3, 1));
                         assert!(rgb.iter().all(|v| v.is_finite() && *v >= 0.0), "{rgb:?} for {surface:?}");
                     }
                 }

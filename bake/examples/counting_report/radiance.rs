@@ -1,6 +1,7 @@
 //! Mean and variance of Σ L_k n_k, the radiance of glints, for K log-uniform levels: ours and the paper's tree against
 //! the multinomial's own moments.
 
+use glint_bake_core::counting::normal::unit_from_bits;
 use glint_bake_core::counting::{Count, MAX_LEVELS, multinomial, paper};
 use glint_bake_core::rng::ItemRng;
 use std::time::Instant;
@@ -47,8 +48,8 @@ pub fn table() {
                 let (mut shift, mut square, mut fourth) = (0.0, 0.0, 0.0);
                 for _ in 0..draws {
                     let counts = if ours {
-                        let bits: [u32; MAX_LEVELS] = std::array::from_fn(|_| rng.bits());
-                        multinomial(n, &weight, count, &bits).map(Count::value)
+                        let words = std::array::from_fn(|_| unit_from_bits(rng.bits()));
+                        multinomial(n, &weight, count, &words).map(Count::value)
                     } else {
                         let bits: [u32; 2 * MAX_LEVELS] = std::array::from_fn(|_| rng.bits());
                         paper::multinomial(n, &weight, count, &bits)
@@ -74,17 +75,20 @@ pub fn table() {
                 ratio(theirs[2]),
                 ratio(ours[2]),
                 if variance > 0.0 { format!("{:.3}", ours[3] / variance) } else { String::new() },
-                nanoseconds(|bits| paper::multinomial(n, &weight, count, bits)),
-                nanoseconds(|bits| multinomial(n, &weight, count, bits.first_chunk().expect("32 words")))
+                nanoseconds(|rng| rng.bits(), |bits| paper::multinomial(n, &weight, count, bits)),
+                nanoseconds(|rng| unit_from_bits(rng.bits()), |words| multinomial(n, &weight, count, words))
             );
         }
     }
 }
 
-/// Least nanoseconds a draw over passes.
-fn nanoseconds<C>(draw: impl Fn(&[u32; 2 * MAX_LEVELS]) -> [C; MAX_LEVELS]) -> f64 {
+/// Least nanoseconds a draw over passes; `word` makes one of the random words that it reads.
+fn nanoseconds<W, C, const WORDS: usize>(
+    word: impl Fn(&mut ItemRng) -> W,
+    draw: impl Fn(&[W; WORDS]) -> [C; MAX_LEVELS],
+) -> f64 {
     let mut rng = ItemRng::new(5, 3, 0);
-    let words: Vec<[u32; 2 * MAX_LEVELS]> = (0..1024).map(|_| std::array::from_fn(|_| rng.bits())).collect();
+    let words: Vec<[W; WORDS]> = (0..1024).map(|_| std::array::from_fn(|_| word(&mut rng))).collect();
     let mut least = f64::MAX;
     for _ in 0..12 {
         let start = Instant::now();

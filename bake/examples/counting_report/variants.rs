@@ -79,7 +79,7 @@ fn expansion(n: f32, p: f32, q: f32, u: f32, order: u32) -> f32 {
 /// Walk where at most `FEW` of the rarer outcome are expected, expansion to `ORDER` beyond; `BOTH` computes both each
 /// time, as lanes of a GPU do when their neighbours go the other way.
 fn switched<const FEW: u32, const ORDER: u32, const BOTH: bool>(n: f32, p: f32, q: f32, bits: [u32; 2]) -> [Count; 2] {
-    let n = whole_count(n, bits[0]);
+    let n = whole_count(n, unit_from_bits(bits[0]));
     let swapped = p > q;
     let (rare, common) = if swapped { (q, p) } else { (p, q) };
     let u = unit_from_bits(if swapped { !bits[1] } else { bits[1] });

@@ -16,7 +16,7 @@
 //! - Counts above 2²⁴ come with what rounding to f32 takes from them ([`Count`]), so that their variance holds to 1e16.
 
 use super::count::Count;
-use super::normal::{normal_upper_fraction, unit_from_bits};
+use super::normal::{Uniform, normal_upper_fraction, unit_from_bits};
 use super::pow1m::{MOST_HALVINGS, halved, halvings};
 
 /// Largest expected count of the rarer outcome that is drawn exactly.
@@ -28,11 +28,11 @@ const WHOLE: f32 = 8_388_608.0;
 /// Steps of the walk: more hits happen in 1.5 of 10⁶ draws when [`FEW`] are expected, and count as this many.
 pub const WALK_STEPS: u32 = 20;
 
-/// A whole number with mean `n`: ⌊n⌋, or ⌊n⌋ + 1 with probability n − ⌊n⌋. Negative `n` counts as 0.
-pub fn whole_count(n: f32, bits: u32) -> f32 {
+/// A whole number with mean `n`: ⌊n⌋, or ⌊n⌋ + 1 where the uniform number `word` is below n − ⌊n⌋. Negative `n` counts as 0.
+pub fn whole_count(n: f32, word: f32) -> f32 {
     let n = n.max(0.0);
     let floor = n.floor();
-    if unit_from_bits(bits) < n - floor { floor + 1.0 } else { floor }
+    if word < n - floor { floor + 1.0 } else { floor }
 }
 
 /// Hits k with P(hits > k) ≤ u of n trials with p ≤ ½, q = 1 − p and np at most a few; exact up to [`WALK_STEPS`].
@@ -68,7 +68,7 @@ fn product_rest(a: f32, b: f32, product: f32) -> f32 {
 ///
 /// With z the normal quantile, σ² = npq, γ = q − p:
 /// np + σz + γ(z² − 1)/6 + z [(1 − 6pq)(z² − 3)/24 − γ²(2z² − 5)/36 − 1/24] / σ, to the nearest whole number.
-pub fn many_hits(n: Count, p: f32, q: f32, u: f32) -> Count {
+pub fn many_hits(n: Count, p: f32, q: f32, u: Uniform) -> Count {
     let mean = n.high * p;
     // From np = 4e8 on, the rounding of np alone would show as a bias in ten million draws.
     let rest = product_rest(n.high, p, mean) + n.low * p;
@@ -88,16 +88,17 @@ pub fn many_hits(n: Count, p: f32, q: f32, u: f32) -> Count {
     Count::new(mean, (rest + spread).round_ties_even())
 }
 
-/// Hits and misses of `n` trials with hit chance `p`, from one random word; they add up to `n`.
+/// Hits and misses of `n` trials with hit chance `p`, from one uniform number; they add up to `n`. The hits are many where the number is
+/// small, the misses where its rest is.
 ///
-/// `n` ≥ 0 is at most 1e16, `p` and `q` = 1 − p are from 0 to 1 (to 1e-16); where both are 0, all hit. For equal `bits` the hits grow with
-/// `p`, and exchanging p with q and `bits` with `!bits` exchanges the result.
-pub fn whole_binomial(n: Count, p: f32, q: f32, bits: u32) -> [Count; 2] {
+/// `n` ≥ 0 is at most 1e16, `p` and `q` = 1 − p are from 0 to 1 (to 1e-16); where both are 0, all hit. For equal `u` the hits grow with
+/// `p`, and exchanging p with q and u with its rest exchanges the result.
+pub fn whole_binomial(n: Count, p: f32, q: f32, u: Uniform) -> [Count; 2] {
     let swapped = p >= q;
     let (rare, common) = if swapped { (q, p) } else { (p, q) };
-    let u = unit_from_bits(if swapped { !bits } else { bits });
+    let u = if swapped { u.exchanged() } else { u };
     let few = n.value() * rare <= FEW;
-    let hits = if few { few_hits(n.value(), rare, common, u).into() } else { many_hits(n, rare, common, u) };
+    let hits = if few { few_hits(n.value(), rare, common, u.number).into() } else { many_hits(n, rare, common, u) };
     if swapped { [n - hits, hits] } else { [hits, n - hits] }
 }
 
@@ -106,5 +107,6 @@ pub fn whole_binomial(n: Count, p: f32, q: f32, bits: u32) -> [Count; 2] {
 ///
 /// Hits have mean np and variance npq + λ(1 − λ)p², λ = n − ⌊n⌋; they and the misses add up to the whole number.
 pub fn binomial(n: f32, p: f32, q: f32, bits: [u32; 2]) -> [Count; 2] {
-    whole_binomial(whole_count(n, bits[0]).into(), p, q, bits[1])
+    let n = whole_count(n, unit_from_bits(bits[0]));
+    whole_binomial(n.into(), p, q, Uniform::from_bits(bits[1]))
 }

@@ -8,8 +8,6 @@
 //! Draws themselves take them by powers of 2, where the exponent of an f32 does half of the work: [`halvings`] and [`halved`]
 //! are polynomials for p ≤ ½ alone, without a function that WGSL leaves to the device.
 
-use std::f32::consts::LN_2;
-
 /// The elementary functions that WGSL leaves to the device, so that tests can put its worst case in their place.
 pub trait Elementary {
     /// Natural logarithm of x > 0.
@@ -83,16 +81,15 @@ pub fn one_minus_exp(math: &impl Elementary, x: f32) -> f32 {
     x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * series)))
 }
 
-/// −log₂(1 − p) for p ≤ ½, to a few units in the last place: how often one trial halves the chance of no hit.
+/// −log₂(1 − p) for p ≤ ½, to 2e-7 of itself: how often one trial halves the chance of no hit.
 ///
-/// Terms go by pairs, which is a short chain of operations, and the first ones last, so that small p keep their digits.
+/// Terms go by pairs, which is a short chain of operations.
 pub fn halvings(p: f32) -> f32 {
     // Powers of less would be subnormal numbers, which take a processor long and add nothing.
     let least = p.max(1e-9);
     let p2 = least * least;
-    let p4 = p2 * p2;
-    let high = (0.388_968_86 - p * 0.293_648_58) + p2 * (1.814_452 - p * 2.446_571) + p4 * 2.079_099_2;
-    p * ((1.442_695_1 + p * 0.721_337_2) + p2 * (0.481_428_2 + p * 0.350_293_87) + p4 * high)
+    let high = (0.054_848_81 + p * 1.133_136_9) - p2 * (1.560_332_5 - p * 1.709_495);
+    p * ((1.442_694_8 + p * 0.721_400_2) + p2 * ((0.478_776_57 + p * 0.392_774_4) + p2 * high))
 }
 
 /// Digits of x > 0: how often 1 is halved to less than 2x (less than 0 where it is doubled), and 1 − x times 2 to the power of that, which
@@ -106,14 +103,13 @@ pub fn digits(x: f32) -> [f32; 2] {
 /// Most halvings whose power is a normal number.
 pub const MOST_HALVINGS: f32 = 125.0;
 
-/// 2^−y and 1 − 2^−y for y from 0 to 126, both to a few units in the last place.
+/// 2^−y and 1 − 2^−y for y from 0 to 126, both to 4e-7 of themselves.
 pub fn halved(y: f32) -> [f32; 2] {
     let whole = y.floor();
     let f = y - whole;
     let f2 = f * f;
     let scale = f32::from_bits(((127 - whole as i32) as u32) << 23);
-    let high = (0.055_498_955 - f * 9.596_278e-3) + f2 * (1.290_781_1e-3 - f * 1.145_806_5e-4);
-    let series = (LN_2 - f * 0.240_226_06) + f2 * high;
+    let series = (0.693_146_9 - f * 0.240_213_82) + f2 * ((0.055_404_34 - f * 9.337_599e-3) + f2 * 1.000_355_1e-3);
     let lost = f * scale * series;
     [scale - lost, (1.0 - scale) + lost]
 }

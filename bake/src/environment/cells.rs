@@ -33,9 +33,6 @@ const LONGEST: f32 = 1e15;
 /// Cells beyond this are clamped.
 const FARTHEST: f32 = 5e8;
 
-/// Largest f32 below 1.
-const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
-
 /// The corners around a place, as their random states, and their weights, which add up to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceCells {
@@ -77,9 +74,11 @@ fn level_seed(level: i32, seed: u32) -> u32 {
     mix_bits(seed.wrapping_add((level as u32).wrapping_mul(0x9e37_79b9)))
 }
 
-/// 32 random bits of a corner, draw `index`.
+/// 32 random bits of a corner, draw `index`. Half a round is enough: what it leaves the lower bits unmixed with, the upper ones, is
+/// mixed into these.
 pub fn corner_bits(state: CellState, index: u32) -> u32 {
-    mix(state.a.wrapping_add((state.b | 1).wrapping_mul(index.wrapping_add(1))))
+    let value = state.a.wrapping_add((state.b | 1).wrapping_mul(index.wrapping_add(1)));
+    (value ^ (value >> 16)).wrapping_mul(0xbb67_ae85)
 }
 
 /// Random state of the corner `offset` from `base` on the fine or the coarse grid: two Feistel rounds, a bijection of the
@@ -179,27 +178,23 @@ pub fn surface_cells(position: Vec2, lod: f32, seed: u32) -> SurfaceCells {
     }
 }
 
-/// Word `index` of a place: uniform, and small where a corner has a rare number.
-pub fn surface_word(cells: &SurfaceCells, index: u32) -> u32 {
+/// Word `index` of a place, from above 0 to 1: uniform, and small where a corner has a rare number.
+pub fn surface_word(cells: &SurfaceCells, index: u32) -> f32 {
     let all = cells.states.iter().zip(cells.inverse_weights);
     let least = all.map(|(state, inverse)| corner_bits(*state, index) as f32 * inverse).fold(f32::INFINITY, f32::min);
     // Half a step of each corner's word: the least is a corner's as often as its weight says, and was divided by it.
     let x = least + 1.0 / 2_147_483_648.0;
     let [two, three, four] = cells.sums;
     // 1 − ∏ (1 − w x) by its terms, so that small ones keep their digits.
-    let word = x * (1.0 - x * (two - x * (three - x * four)));
-    (word.min(BELOW_ONE) * 4_294_967_296.0) as u32
+    x * (1.0 - x * (two - x * (three - x * four)))
 }
 
-/// The words that [`multinomial`](crate::counting::multinomial()) reads for `leaves` leaves of its tree.
-///
-/// Its words are small where the facet of a fraction is there, and large where the brighter branch of a node, the right
-/// one, gets more: so rare bright facets are the spots.
-pub fn surface_words(cells: &SurfaceCells, leaves: usize) -> [u32; MAX_LEVELS] {
-    let mut words = [0; MAX_LEVELS];
+/// The words that [`multinomial`](crate::counting::multinomial()) reads for `leaves` leaves of its tree: rare bright facets are where a
+/// corner has a rare number.
+pub fn surface_words(cells: &SurfaceCells, leaves: usize) -> [f32; MAX_LEVELS] {
+    let mut words = [0.0; MAX_LEVELS];
     for (index, word) in words.iter_mut().enumerate().take(leaves) {
-        let small = surface_word(cells, index as u32);
-        *word = if index == 0 { small } else { !small };
+        *word = surface_word(cells, index as u32);
     }
     words
 }

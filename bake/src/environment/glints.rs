@@ -64,14 +64,15 @@ pub fn glint_chances(environment: &Environment, surface: &GlintSurface) -> Glint
     }
 }
 
-/// Radiance towards the eye of one draw of facets, linear RGB; `bits` are the random words of the pixel.
-pub fn environment_glints(environment: &Environment, surface: &GlintSurface, bits: &[u32; MAX_LEVELS]) -> [f32; 3] {
+/// Radiance towards the eye of one draw of facets, linear RGB; `words` are the random words of the pixel, see
+/// [`multinomial`](crate::counting::multinomial()).
+pub fn environment_glints(environment: &Environment, surface: &GlintSurface, words: &[f32; MAX_LEVELS]) -> [f32; 3] {
     let chances = glint_chances(environment, surface);
     if !(chances.moments[0] > 0.0 && surface.facets > 0.0) {
         return if surface.facets > 0.0 { chances.smooth } else { [0.0; 3] };
     }
     let mut ratios = [0.0; 3];
-    let counts = level_counts(environment, &chances, surface.facets, bits);
+    let counts = level_counts(environment, &chances, surface.facets, words);
     let present = counts.iter().sum::<f32>() / surface.facets;
     if environment.params.coloured {
         let cos_o = surface.normal.dot(surface.view);
@@ -96,14 +97,14 @@ fn level_counts(
     environment: &Environment,
     chances: &GlintChances,
     facets: f32,
-    bits: &[u32; MAX_LEVELS],
+    words: &[f32; MAX_LEVELS],
 ) -> [f32; MAX_LEVELS] {
     let levels = environment.params.levels.len();
     let mut p = chances.p;
     if levels == 1 {
         p[1] = 1.0 - p[0];
     }
-    multinomial(facets, &p, levels.max(2), bits).map(Count::value)
+    multinomial(facets, &p, levels.max(2), words).map(Count::value)
 }
 
 /// Drawn over expected light, channel by channel.

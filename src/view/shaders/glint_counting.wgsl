@@ -7,8 +7,8 @@
 // Nodes are drawn four at a time: their chains of dependent operations overlap, and they share the turns of a loop. Where there
 // are fewer, constants say so, and what is computed of the rest is dropped. Polynomials go by pairs of terms for the same reason.
 //
-// Pure functions, no accessors. Random words are uniform 32-bit numbers. N is any number from 0 to 1e16, p and q = 1 - p are from
-// 0 to 1. Compilers must not reassociate the differences of GlintCounts.
+// Pure functions, no accessors. N is any number from 0 to 1e16, p and q = 1 - p are from 0 to 1. Compilers must not reassociate the
+// differences of GlintCounts.
 
 // Largest expected count of the rarer outcome that is drawn exactly.
 const GLINT_FEW: f32 = 6.0;
@@ -19,6 +19,8 @@ const GLINT_EXACT_COUNT: f32 = 16777216.0;
 const GLINT_WALK_STEPS: f32 = 20.0;
 // 2^-y is a normal number up to here.
 const GLINT_MOST_HALVINGS: f32 = 125.0;
+// Words are taken as at least this, half a step of 32 random bits.
+const GLINT_LEAST_WORD: f32 = 1.1641532e-10;
 // The nodes that are drawn of four.
 const GLINT_ONE: vec4<bool> = vec4<bool>(true, false, false, false);
 const GLINT_TWO: vec4<bool> = vec4<bool>(true, true, false, false);
@@ -59,12 +61,13 @@ struct GlintLevels {
     d: vec4f,
 }
 
-// Random words of a draw of up to sixteen levels: word 0 makes the facets whole, word i draws node i of the tree.
+// Random words of a draw of up to sixteen levels: uniform numbers in (0, 1), with the more digits the smaller they are. Word 0 makes
+// the facets whole and is small where there is one more; word i draws node i of the tree and is small where the right branch gets more.
 struct GlintWords {
-    a: vec4u,
-    b: vec4u,
-    c: vec4u,
-    d: vec4u,
+    a: vec4f,
+    b: vec4f,
+    c: vec4f,
+    d: vec4f,
 }
 
 // Uniform numbers in (0, 1) of 32 random bits; small ones keep a resolution of 2^-32.
@@ -72,19 +75,13 @@ fn glint_units_from_bits(bits: vec4u) -> vec4f {
     return min((vec4f(bits) + 0.5) * (1.0 / 4294967296.0), vec4f(0.99999994));
 }
 
-fn glint_unit_from_bits(bits: u32) -> f32 {
-    return glint_units_from_bits(vec4u(bits, 0u, 0u, 0u)).x;
-}
-
-// -log2(1 - p) of p <= 1/2, to a few units in the last place.
+// -log2(1 - p) of p <= 1/2, to 2e-7 of itself.
 fn glint_halvings(p: vec4f) -> vec4f {
     // Powers of less would be subnormal numbers, which take some processors long and add nothing.
     let least = max(p, vec4f(1.0e-9));
     let p2 = least * least;
-    let p4 = p2 * p2;
-    let high = (0.38896886 - p * 0.29364858) + p2 * (1.814452 - p * 2.446571) + p4 * 2.0790992;
-    // The first terms last, so that small p keep their digits.
-    return p * ((1.4426951 + p * 0.7213372) + p2 * (0.4814282 + p * 0.35029387) + p4 * high);
+    let high = (0.05484881 + p * 1.1331369) - p2 * (1.5603325 - p * 1.709495);
+    return p * ((1.4426948 + p * 0.7214002) + p2 * ((0.47877657 + p * 0.3927744) + p2 * high));
 }
 
 // Digits of positive numbers: how often 1 is halved to less than twice the number (less than 0 where it is doubled), and 1 less the
@@ -113,15 +110,14 @@ struct GlintHalved {
     lost: vec4f,
 }
 
-// 2^-y and 1 - 2^-y for y from 0 to 126, to a few units in the last place.
+// 2^-y and 1 - 2^-y for y from 0 to 126, to 4e-7 of themselves.
 fn glint_halved(y: vec4f) -> GlintHalved {
     let whole = floor(y);
     let f = y - whole;
     let f2 = f * f;
     // 2^-whole: above 2^23 the bits of an f32 are those of the whole number, and all but the exponent's shift out.
     let scale = bitcast<vec4f>(0x3f800000u - (bitcast<vec4u>(whole + GLINT_WHOLE) << vec4u(23u)));
-    let high = (0.055498955 - f * 9.596278e-3) + f2 * (1.2907811e-3 - f * 1.1458065e-4);
-    let series = (0.6931472 - f * 0.24022606) + f2 * high;
+    let series = (0.6931469 - f * 0.24021382) + f2 * ((0.05540434 - f * 9.337599e-3) + f2 * 1.0003551e-3);
     let lost = f * scale * series;
     return GlintHalved(scale - lost, (1.0 - scale) + lost);
 }
@@ -150,11 +146,11 @@ fn glint_counts_subtract(a: GlintCounts, b: GlintCounts) -> GlintCounts {
     return glint_counts(high, rest + (a.low - b.low));
 }
 
-// A whole number with mean `n`.
-fn glint_whole_count(n: f32, bits: u32) -> f32 {
+// A whole number with mean `n` by a uniform number.
+fn glint_whole_count(n: f32, word: f32) -> f32 {
     let positive = max(n, 0.0);
     let whole = floor(positive);
-    return select(whole, whole + 1.0, glint_unit_from_bits(bits) < positive - whole);
+    return select(whole, whole + 1.0, word < positive - whole);
 }
 
 // A walk along numbers of hits, up to the first of which more hits are not as likely as the uniform number says. `density` is the
@@ -202,8 +198,7 @@ fn glint_few_hits(n: vec4f, p: vec4f, q: vec4f, u: vec4f, y: vec4f, walked: vec4
             break;
         }
     }
-    let hits = vec4f(a.hits, b.hits, c.hits, d.hits);
-    return select(hits, n, hits > n);
+    return min(vec4f(a.hits, b.hits, c.hits, d.hits), n);
 }
 
 // What rounding took from a * b = `product`, by halves whose products are exact.
@@ -240,20 +235,20 @@ fn glint_many_hits(n: GlintCounts, p: vec4f, q: vec4f, u: vec4f, y: vec4f) -> Gl
     return GlintCounts(select(large.high, small, is_small), select(large.low, vec4f(0.0), is_small));
 }
 
-// Hits and misses of four lots of `n` trials with hit chance `p`; they add up to `n`. Where both p and q are 0, all hit. Lots that are
-// not `drawn` are anything.
-fn glint_whole_binomials(n: GlintCounts, p: vec4f, q: vec4f, bits: vec4u, drawn: vec4<bool>) -> GlintSplits {
+// Hits and misses of four lots of `n` trials with hit chance `p`; they add up to `n`. Where both p and q are 0, all hit. The hits are
+// many where the uniform number `u` is small, the misses where `v` = 1 - u is. Lots that are not `drawn` are anything.
+fn glint_whole_binomials(n: GlintCounts, p: vec4f, q: vec4f, u: vec4f, v: vec4f, drawn: vec4<bool>) -> GlintSplits {
     let swapped = p >= q;
     let rare = select(p, q, swapped);
     let frequent = select(q, p, swapped);
-    let u = glint_units_from_bits(select(bits, ~bits, swapped));
+    let word = select(u, v, swapped);
     let value = glint_counts_value(n);
     let few = value * rare <= vec4f(GLINT_FEW);
     // Logarithms of both ways are one polynomial.
-    let digits = glint_digits(4.0 * u * (1.0 - u));
+    let digits = glint_digits(4.0 * u * v);
     let halvings = glint_halvings(select(digits.rest, rare, few));
-    let walked = glint_few_hits(value, rare, frequent, u, value * halvings, few & drawn);
-    let many = glint_many_hits(n, rare, frequent, u, digits.whole + halvings);
+    let walked = glint_few_hits(value, rare, frequent, word, value * halvings, few & drawn);
+    let many = glint_many_hits(n, rare, frequent, word, digits.whole + halvings);
     let hits = GlintCounts(select(many.high, walked, few), select(many.low, vec4f(0.0), few));
     let misses = glint_counts_subtract(n, hits);
     return GlintSplits(
@@ -265,18 +260,21 @@ fn glint_whole_binomials(n: GlintCounts, p: vec4f, q: vec4f, bits: vec4u, drawn:
 // Hits and misses of any number `n` >= 0 of trials: the first word makes it whole, the second draws.
 fn glint_binomial(n: f32, p: f32, q: f32, bits: vec2u) -> GlintSplit {
     let none = vec4f(0.0);
-    let whole = GlintCounts(vec4f(glint_whole_count(n, bits.x), 0.0, 0.0, 0.0), none);
-    let splits = glint_whole_binomials(whole, vec4f(p, none.xyz), vec4f(q, vec3f(1.0)), vec4u(bits.y, 0u, 0u, 0u), GLINT_ONE);
+    let u = glint_units_from_bits(vec4u(bits, ~bits.y, 0u));
+    let whole = GlintCounts(vec4f(glint_whole_count(n, u.x), none.xyz), none);
+    let splits = glint_whole_binomials(whole, vec4f(p, none.xyz), vec4f(q, vec3f(1.0)), u.yyyy, u.zzzz, GLINT_ONE);
     return GlintSplit(
         GlintCount(splits.hits.high.x, splits.hits.low.x), GlintCount(splits.misses.high.x, splits.misses.low.x),
     );
 }
 
 // Four nodes of the tree: how many of `n` go left and right, with chances in proportion to the weights.
-fn glint_splits(n: GlintCounts, left: vec4f, right: vec4f, bits: vec4u, drawn: vec4<bool>) -> GlintSplits {
+fn glint_splits(n: GlintCounts, left: vec4f, right: vec4f, words: vec4f, drawn: vec4<bool>) -> GlintSplits {
     // Nodes without weight have chances of 0, of which all go left.
     let share = 1.0 / max(left + right, vec4f(1.0e-37));
-    return glint_whole_binomials(n, left * share, right * share, bits, drawn);
+    // A word of 1 has a logarithm, too.
+    let u = max(1.0 - words, vec4f(GLINT_LEAST_WORD));
+    return glint_whole_binomials(n, left * share, right * share, u, words, drawn);
 }
 
 // Weight of four leaves.
@@ -298,10 +296,10 @@ fn glint_pair_counts(x: GlintSplits) -> GlintCounts {
 }
 
 // Two subtrees of four leaves, of the first two of `tops`: words of their top nodes and of the four children.
-fn glint_multinomial_eight(tops: GlintCounts, a: vec4f, b: vec4f, top: vec2u, children: vec4u, drawn: vec4<bool>) -> array<vec4f, 2> {
+fn glint_multinomial_eight(tops: GlintCounts, a: vec4f, b: vec4f, top: vec2f, children: vec4f, drawn: vec4<bool>) -> array<vec4f, 2> {
     let none = vec2f(0.0);
     let halves = glint_splits(
-        tops, vec4f(a.x + a.y, b.x + b.y, none), vec4f(a.z + a.w, b.z + b.w, none), vec4u(top, 0u, 0u), drawn & GLINT_TWO,
+        tops, vec4f(a.x + a.y, b.x + b.y, none), vec4f(a.z + a.w, b.z + b.w, none), vec4f(top, none), drawn & GLINT_TWO,
     );
     let leaves = glint_splits(
         glint_pair_counts(halves), vec4f(a.x, a.z, b.x, b.z), vec4f(a.y, a.w, b.y, b.w), children, drawn.xxyy,
@@ -321,22 +319,22 @@ fn glint_multinomial(n: f32, weights: GlintLevels, levels: u32, words: GlintWord
     if levels <= 4u {
         // With two levels the tree's only node is its root.
         let left = select(words.a.z, words.a.y, levels <= 2u);
-        let counts = glint_multinomial_eight(root, weights.a, none, vec2u(words.a.y, 0u), vec4u(left, words.a.w, 0u, 0u), GLINT_ONE);
+        let counts = glint_multinomial_eight(root, weights.a, none, vec2f(words.a.y, 0.0), vec4f(left, words.a.w, 0.0, 0.0), GLINT_ONE);
         return GlintLevels(counts[0], none, none, none);
     }
     let a = glint_quad_weight(weights.a);
     let b = glint_quad_weight(weights.b);
     if levels <= 8u {
-        let halves = glint_splits(root, vec4f(a, none.xyz), vec4f(b, none.xyz), vec4u(words.a.y, 0u, 0u, 0u), GLINT_ONE);
+        let halves = glint_splits(root, vec4f(a, none.xyz), vec4f(b, none.xyz), vec4f(words.a.y, none.xyz), GLINT_ONE);
         let counts =
             glint_multinomial_eight(glint_pair_counts(halves), weights.a, weights.b, words.a.zw, words.b, GLINT_TWO);
         return GlintLevels(counts[0], counts[1], none, none);
     }
     let c = glint_quad_weight(weights.c);
     let d = glint_quad_weight(weights.d);
-    let halves = glint_splits(root, vec4f(a + b, none.xyz), vec4f(c + d, none.xyz), vec4u(words.a.y, 0u, 0u, 0u), GLINT_ONE);
+    let halves = glint_splits(root, vec4f(a + b, none.xyz), vec4f(c + d, none.xyz), vec4f(words.a.y, none.xyz), GLINT_ONE);
     let quarters = glint_pair_counts(
-        glint_splits(glint_pair_counts(halves), vec4f(a, c, none.xy), vec4f(b, d, none.xy), vec4u(words.a.zw, 0u, 0u), GLINT_TWO),
+        glint_splits(glint_pair_counts(halves), vec4f(a, c, none.xy), vec4f(b, d, none.xy), vec4f(words.a.zw, none.xy), GLINT_TWO),
     );
     let dark = glint_multinomial_eight(quarters, weights.a, weights.b, words.b.xy, words.c, GLINT_TWO);
     let rest = GlintCounts(quarters.high.zwzw, quarters.low.zwzw);

@@ -58,9 +58,15 @@ fn glint_surface_corner(base: vec2i, offset: vec2i, coarse: bool, seeds: vec2u) 
     return GlintCellState(a, at.y + glint_surface_mix(a ^ seed));
 }
 
-// 32 random bits of a corner, draw `index`.
-fn glint_surface_bits(state: GlintCellState, index: u32) -> u32 {
-    return glint_surface_mix(state.a + (state.b | 1u) * (index + 1u));
+// 32 random bits of a corner for each of the draws `index` to `index` + 3. Half a round is enough: what it leaves the lower bits
+// unmixed with, the upper ones, is mixed into these.
+fn glint_surface_bits(state: GlintCellState, index: u32) -> vec4u {
+    let step = state.b | 1u;
+    let first = state.a + step * (index + 1u);
+    let second = first + step;
+    let third = second + step;
+    let values = vec4u(first, second, third, third + step);
+    return (values ^ (values >> vec4u(16u))) * 0xbb67ae85u;
 }
 
 // Seed of a level's grid.
@@ -132,41 +138,30 @@ fn glint_surface_cells(position: vec2f, lod: f32, seed: u32) -> GlintSurfaceCell
     );
 }
 
-// The word of a place, draw `index`, from 0 to 1: uniform, and small where a corner has a rare number.
-fn glint_surface_word(cells: GlintSurfaceCells, index: u32) -> f32 {
-    let bits = vec4u(
-        glint_surface_bits(cells.a, index), glint_surface_bits(cells.b, index),
-        glint_surface_bits(cells.c, index), glint_surface_bits(cells.d, index),
-    );
+// Words `index` to `index` + 3 of a place, from 0 to 1: uniform, and small where a corner has a rare number.
+fn glint_surface_four_words(cells: GlintSurfaceCells, index: u32) -> vec4f {
     // Positive numbers have the order of their bits. As integers, no device minds what is not a number.
-    let all = bitcast<vec4u>(vec4f(bits) * cells.inverse_weights);
-    let least = bitcast<f32>(min(min(all.x, all.y), min(all.z, all.w)));
+    let a = bitcast<vec4u>(vec4f(glint_surface_bits(cells.a, index)) * cells.inverse_weights.x);
+    let b = bitcast<vec4u>(vec4f(glint_surface_bits(cells.b, index)) * cells.inverse_weights.y);
+    let c = bitcast<vec4u>(vec4f(glint_surface_bits(cells.c, index)) * cells.inverse_weights.z);
+    let d = bitcast<vec4u>(vec4f(glint_surface_bits(cells.d, index)) * cells.inverse_weights.w);
+    let least = bitcast<vec4f>(min(min(a, b), min(c, d)));
     // Half a step of each corner's word: the least is a corner's as often as its weight says, and was divided by it.
     let x = least + 1.0 / 2147483648.0;
     // 1 less the product of all 1 - weight x by its terms, so that small ones keep their digits.
     return x * (1.0 - x * (cells.sums.x - x * (cells.sums.y - x * cells.sums.z)));
 }
 
-// Words `index` to `index` + 3 of a place. The conversion keeps to the range of words.
-fn glint_surface_four_words(cells: GlintSurfaceCells, index: u32) -> vec4u {
-    let words = vec4f(
-        glint_surface_word(cells, index), glint_surface_word(cells, index + 1u),
-        glint_surface_word(cells, index + 2u), glint_surface_word(cells, index + 3u),
-    );
-    return vec4u(words * 4294967296.0);
-}
-
-// The words that a multinomial draw of `levels` levels reads: small where the facet of a fraction is there, large where the
-// brighter branch of a node gets more.
+// The words that a multinomial draw of `levels` levels reads: rare bright facets are where a corner has a rare number.
 fn glint_surface_words(cells: GlintSurfaceCells, levels: u32) -> GlintWords {
-    let first = glint_surface_four_words(cells, 0u) ^ vec4u(0u, vec3u(0xffffffffu));
-    var words = GlintWords(first, vec4u(0u), vec4u(0u), vec4u(0u));
+    let none = vec4f(0.0);
+    var words = GlintWords(glint_surface_four_words(cells, 0u), none, none, none);
     if levels > 4u {
-        words.b = ~glint_surface_four_words(cells, 4u);
+        words.b = glint_surface_four_words(cells, 4u);
     }
     if levels > 8u {
-        words.c = ~glint_surface_four_words(cells, 8u);
-        words.d = ~glint_surface_four_words(cells, 12u);
+        words.c = glint_surface_four_words(cells, 8u);
+        words.d = glint_surface_four_words(cells, 12u);
     }
     return words;
 }

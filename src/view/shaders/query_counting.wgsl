@@ -6,8 +6,10 @@ struct CountingQuery {
     p: f32,
     q: f32,
     levels: u32,
+    // Random words of the binomial draw.
+    bits: vec2u,
     weights: GlintLevels,
-    // The first two also draw the binomial counts.
+    // And of the multinomial one.
     words: GlintWords,
 }
 
@@ -26,7 +28,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let q = queries[id.x];
     answers[id.x] = CountingAnswer(
-        glint_binomial(q.n, q.p, q.q, q.words.a.xy),
+        glint_binomial(q.n, q.p, q.q, q.bits),
         glint_multinomial(q.n, q.weights, q.levels, q.words),
     );
 }

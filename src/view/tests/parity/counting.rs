@@ -8,6 +8,7 @@
 use crate::support::{QUERIES, compare, gpu, log_uniform, random};
 use bytemuck::{Pod, Zeroable};
 use glint_bake_core::counting::multinomial::tree_leaves;
+use glint_bake_core::counting::normal::unit_from_bits;
 use glint_bake_core::counting::{Count, MAX_LEVELS, binomial, multinomial};
 use glint_view::gpu::answer;
 use rand::RngExt;
@@ -25,8 +26,12 @@ struct Query {
     p: f32,
     q: f32,
     levels: u32,
+    // Random words of the binomial draw.
+    bits: [u32; 2],
+    unused: [u32; 2],
     weights: [f32; MAX_LEVELS],
-    words: [u32; MAX_LEVELS],
+    // And of the multinomial one.
+    words: [f32; MAX_LEVELS],
 }
 
 /// `CountingAnswer`: high and low of hits and misses, and the counts.
@@ -58,15 +63,22 @@ fn queries(seed: u64) -> Vec<Query> {
         let mut weights = [0.0; MAX_LEVELS];
         weights[..levels as usize]
             .fill_with(|| if rng.random::<f32>() < 0.1 { 0.0 } else { log_uniform(rng, 1e-8, 1.0) });
-        Query { n: n.clamp(0.01, 1e16), p, q, levels, weights, words: std::array::from_fn(|_| rng.random()) }
+        let bits = [rng.random(), rng.random()];
+        let words = std::array::from_fn(|_| unit_from_bits(rng.random()));
+        Query { n: n.clamp(0.01, 1e16), p, q, levels, bits, unused: [0; 2], weights, words }
     };
     (0..2 * QUERIES).map(make).collect()
 }
 
-/// The word, and those around it that are `NEAR` of all words away.
-pub fn beside(word: u32) -> [u32; 3] {
+/// The bits, and those around them that are `NEAR` of all words away.
+fn bits_beside(bits: u32) -> [u32; 3] {
     let step = (NEAR * 4_294_967_296.0) as u32;
-    [word, word.saturating_sub(step), word.saturating_add(step)]
+    [bits, bits.saturating_sub(step), bits.saturating_add(step)]
+}
+
+/// The words that are `NEAR` of all words away from one.
+pub fn beside(word: f32) -> [f32; 2] {
+    [(word - NEAR).max(1e-10), (word + NEAR).min(1.0)]
 }
 
 #[test]
@@ -79,8 +91,8 @@ fn binomial_counts_of_the_shader_are_those_of_the_cpu() {
     let mut flipped = 0;
     let mut rarer = Vec::new();
     for (query, answer) in queries.iter().zip(&answers) {
-        let at = |word: u32| binomial(query.n, query.p, query.q, [query.words[0], word]).map(f64::from);
-        let near = beside(query.words[1]).map(at);
+        let at = |word: u32| binomial(query.n, query.p, query.q, [query.bits[0], word]).map(f64::from);
+        let near = bits_beside(query.bits[1]).map(at);
         let exchanged = usize::from(query.p > query.q);
         let (found, expected) = (value(answer.split[exchanged]), near.map(|pair| pair[exchanged]));
         // In standard deviations of the count, or whole counts where that is less than one.
@@ -113,7 +125,7 @@ fn multinomial_counts_of_the_shader_are_those_of_the_cpu() {
     let mut same = Vec::new();
     for (query, answer) in queries.iter().zip(&answers) {
         let levels = query.levels as usize;
-        let at = |words: &[u32; MAX_LEVELS]| multinomial(query.n, &query.weights, levels, words).map(Count::value);
+        let at = |words: &[f32; MAX_LEVELS]| multinomial(query.n, &query.weights, levels, words).map(Count::value);
         let agrees = |expected: &[f32; MAX_LEVELS]| {
             answer.counts.iter().zip(expected).all(|(a, e)| (a - e).abs() <= 1e-3 * a.abs().max(e.abs()) + 1e-5)
         };
@@ -123,8 +135,7 @@ fn multinomial_counts_of_the_shader_are_those_of_the_cpu() {
             continue;
         }
         flipped += 1;
-        let beside = (1..tree_leaves(levels))
-            .flat_map(|node| beside(query.words[node])[1..].iter().map(move |word| (node, *word)).collect::<Vec<_>>());
+        let beside = (1..tree_leaves(levels)).flat_map(|node| beside(query.words[node]).map(|word| (node, word)));
         let other = beside.into_iter().any(|(node, word)| {
             let mut words = query.words;
             words[node] = word;

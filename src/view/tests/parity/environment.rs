@@ -8,6 +8,7 @@ use crate::support::{QUERIES, agree, compare, gpu, log_uniform, random, real_fil
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
 use glint_bake_core::counting::multinomial::tree_leaves;
+use glint_bake_core::counting::normal::unit_from_bits;
 use glint_bake_core::environment::cells::{
     footprint_area, footprint_facets, surface_cells, surface_lod, surface_words,
 };
@@ -35,7 +36,7 @@ struct Query {
     position: Vec2,
     d_dx: Vec2,
     d_dy: Vec2,
-    words: [u32; MAX_LEVELS],
+    words: [f32; MAX_LEVELS],
     own_words: u32,
     facets: f32,
     unused: [u32; 2],
@@ -53,7 +54,7 @@ struct Answer {
     lod: f32,
     unused: u32,
     p: [f32; MAX_LEVELS],
-    words: [u32; MAX_LEVELS],
+    words: [f32; MAX_LEVELS],
 }
 
 impl Query {
@@ -124,7 +125,7 @@ fn query(rng: &mut impl Rng) -> Query {
         position: Vec2::from_angle(rng.random::<f32>() * std::f32::consts::TAU) * log_uniform(rng, 1e-3, 30.0),
         d_dx: along * size,
         d_dy: along.perp() * size * log_uniform(rng, 0.02, 1.0) + along * size * (rng.random::<f32>() - 0.5),
-        words: std::array::from_fn(|_| rng.random()),
+        words: std::array::from_fn(|_| unit_from_bits(rng.random())),
         own_words: u32::from(rng.random::<bool>()),
         facets,
         unused: [0; 2],
@@ -155,14 +156,14 @@ struct Pairs {
 fn glints_beside(
     environment: &Environment,
     surface: &GlintSurface,
-    words: &[u32; MAX_LEVELS],
+    words: &[f32; MAX_LEVELS],
     found: [f32; 3],
 ) -> bool {
     let leaves = tree_leaves(environment.params.levels.len().max(2));
     (0..leaves).any(|node| {
-        beside(words[node])[1..].iter().any(|word| {
+        beside(words[node]).into_iter().any(|word| {
             let mut words = *words;
-            words[node] = *word;
+            words[node] = word;
             let expected = environment_glints(environment, surface, &words);
             (0..3).all(|c| agree(found[c], expected[c]))
         })
@@ -185,10 +186,9 @@ fn hold(environment: &Environment, queries: &[Query], answers: &[Answer], pairs:
         if query.own_words != 0 {
             let words = surface_words(&surface_cells(query.position, lod, query.seed), leaves);
             for i in 0..leaves {
-                let small = |word: u32| if i == 0 { word } else { !word } as f32 / 4_294_967_296.0;
-                pairs.words.push((small(answer.words[i]), small(words[i])));
+                pairs.words.push((answer.words[i], words[i]));
                 // Rare ones by their size: a word is as rare as it is small.
-                pairs.small_words.push((small(answer.words[i]).max(1e-8).log10(), small(words[i]).max(1e-8).log10()));
+                pairs.small_words.push((answer.words[i].max(1e-8).log10(), words[i].max(1e-8).log10()));
             }
             assert!(agree(answer.facets, facets) && agree(answer.lod, lod), "{query:?} {answer:?}");
         }
