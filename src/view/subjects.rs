@@ -11,6 +11,9 @@ use glint_formats::Pack;
 use glint_formats::lobes::LobesParams;
 use std::rc::Rc;
 
+/// Share of a map beyond the rim of the disk of normals that pictures of lobes do not give back: less than the digits of a pixel.
+const BEYOND_RIM: f32 = 1e-4;
+
 /// All that can be shown, and the environment that can light it.
 #[derive(Debug, Default)]
 pub struct Subjects {
@@ -59,7 +62,8 @@ impl Subjects {
 
     fn add(&mut self, method: Method, name: &str, data: &Rc<Resources>, material: Material) -> &mut Shown {
         let (name, data) = (name.to_owned(), Rc::clone(data));
-        self.shown.push_mut(Shown { name, method, data, material, files: Vec::new(), constants: Vec::new() })
+        let (files, constants) = (Vec::new(), Vec::new());
+        self.shown.push_mut(Shown { name, method, data, material, files, constants, rim_roughness: 0.0 })
     }
 
     fn add_dictionaries(&mut self, gpu: &Gpu, pack: &Pack, colours: &[Vec3]) -> Result<(), GpuError> {
@@ -101,6 +105,7 @@ impl Subjects {
             let data = Rc::new(methods::lobes::upload(gpu, &baked));
             let shown = self.add(Method::Lobes, name, &data, lobes_material(&baked.params));
             shown.files = methods::lobes::modules(&baked.params).to_vec();
+            shown.rim_roughness = baked.rim_roughness(BEYOND_RIM);
         }
         Ok(())
     }
@@ -111,6 +116,7 @@ impl Subjects {
             let data = Rc::new(methods::lobes::upload_surface(gpu, &baked));
             let shown = self.add(Method::Surface, name, &data, lobes_material(&baked.lobes.params));
             shown.files = methods::lobes::surface_modules(&baked, true).to_vec();
+            shown.rim_roughness = baked.lobes.rim_roughness(BEYOND_RIM);
         }
         Ok(())
     }

@@ -78,6 +78,22 @@ pub fn seen(lobe: &Lobe, d: Vec2, frame: &Frame, roughness: f32) -> SeenLobe {
 
 /// What `lobe` gives to a footprint that sees every place alike: all of it.
 pub fn seen_whole(lobe: &Lobe, roughness: f32) -> SeenLobe {
+    seen_gaussian(lobe.weight, lobe.normal, whole_covariance(lobe, roughness), roughness * roughness)
+}
+
+/// Mass of a whole lobe inside the disk of normals.
+pub fn mass_inside(lobe: &Lobe, roughness: f32) -> f32 {
+    inside_disk(lobe.normal, whole_covariance(lobe, roughness))
+}
+
+/// Mass inside the disk of a Gaussian of the intrinsic roughness alone around the projected normal `s`.
+pub fn facet_mass_inside(s: Vec2, roughness: f32) -> f32 {
+    let intrinsic = roughness * roughness;
+    inside_disk(s, [intrinsic, 0.0, intrinsic])
+}
+
+/// Covariance of a whole lobe's normals: xx, xy, yy.
+fn whole_covariance(lobe: &Lobe, roughness: f32) -> [f32; 3] {
     let slopes = lobe.jacobian * lobe.spread;
     let outer = |m: &Mat2| {
         let (a, b) = (m.x_axis, m.y_axis);
@@ -85,8 +101,7 @@ pub fn seen_whole(lobe: &Lobe, roughness: f32) -> SeenLobe {
     };
     let (rest, sloped) = (outer(&lobe.residual), outer(&slopes));
     let intrinsic = roughness * roughness;
-    let covariance = [intrinsic + rest[0] + sloped[0], rest[1] + sloped[1], intrinsic + rest[2] + sloped[2]];
-    seen_gaussian(lobe.weight, lobe.normal, covariance, intrinsic)
+    [intrinsic + rest[0] + sloped[0], rest[1] + sloped[1], intrinsic + rest[2] + sloped[2]]
 }
 
 /// A Gaussian over the disk whose covariance has at least the eigenvalue `intrinsic`.

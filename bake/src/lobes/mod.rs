@@ -3,8 +3,8 @@
 //!
 //! [`seeds`] turns texels into lobes, [`merge`] reduces them, [`bake`] builds the MIP and [`quantise`] packs it.
 //! [`query`] finds what a footprint sees as a sum over placed cells, [`eval`] is the arithmetic of one lobe;
-//! [`reference`] is the same by definition, in f64, and [`quality`] the difference; [`edge_levels`] reads what the paper would. [`sections`] is all as
-//! a pack.
+//! [`reference`] is the same by definition, in f64, and [`quality`] the difference; [`edge_levels`] reads what the paper would,
+//! [`rim`] tells what may be left out. [`sections`] is all as a pack.
 
 pub mod bake;
 pub mod edge_levels;
@@ -18,6 +18,7 @@ pub mod quantise;
 pub mod query;
 pub mod reference;
 pub mod reference_lobes;
+pub mod rim;
 mod runnalls;
 pub mod sections;
 pub mod seeds;

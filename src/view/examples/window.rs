@@ -41,6 +41,7 @@ fn main() -> ExitCode {
                 material,
                 files: Vec::new(),
                 constants: Vec::new(),
+                rim_roughness: 0.0,
             };
             let list = vec![
                 shown(Method::Smooth, ResourceSet::default().finish(gpu)),

@@ -208,7 +208,7 @@ impl Renderer {
             material.seed = material.seed.wrapping_add(self.frames);
         }
         let group = scene_group(gpu, &self.scene_layout, &scene, &material);
-        let constants = side.shown.constants.iter().copied().chain(side.shown.method.constants(&material));
+        let constants = side.shown.pipeline_constants(&material).into_iter();
         let key = Key {
             method: side.shown.method,
             lights: view_of.scene.lights.bits(),

@@ -108,8 +108,7 @@ impl Method {
     }
 
     /// Pipeline constants of its program that follow from a material.
-    pub(super) fn constants(self, material: &Material) -> Vec<(&'static str, f64)> {
-        let asks = |name, asked: bool| (name, f64::from(u8::from(asked)));
+    fn constants(self, material: &Material) -> Vec<(&'static str, f64)> {
         match self {
             Method::Dictionary => vec![
                 asks("DICTIONARY_PARTIAL", material.relative_area < 1.0),
@@ -138,4 +137,23 @@ pub struct Shown {
     pub files: Vec<&'static str>,
     /// Pipeline constants that follow from the data.
     pub constants: Vec<(&'static str, f64)>,
+    /// Widest intrinsic roughness at which next to nothing of lobes lies beyond the rim of the disk of normals.
+    pub rim_roughness: f32,
+}
+
+impl Shown {
+    /// All pipeline constants of its program for a material.
+    pub(super) fn pipeline_constants(&self, material: &Material) -> Vec<(&'static str, f64)> {
+        let mut constants = self.constants.clone();
+        constants.extend(self.method.constants(material));
+        if matches!(self.method, Method::Lobes | Method::Surface) {
+            constants.push(asks("LOBES_RIM", material.intrinsic_roughness > self.rim_roughness));
+        }
+        constants
+    }
+}
+
+/// A pipeline constant that is a switch.
+fn asks(name: &'static str, asked: bool) -> (&'static str, f64) {
+    (name, f64::from(u8::from(asked)))
 }

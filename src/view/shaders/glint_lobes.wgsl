@@ -29,6 +29,10 @@ const GLINT_LOBES_UNORM8: u32 = 1u;
 const GLINT_WRAP_REPEAT: u32 = 0u;
 const GLINT_WRAP_CLAMP: u32 = 1u;
 
+// Whether densities get back the mass that Gaussians have beyond the rim of the disk of normals. A program of a map of which next to
+// nothing lies there may set this to false before it asks; some devices run what is left out, a sum over strips, for every cell.
+var<private> glint_lobes_rim: bool = true;
+
 // A map and how its lobes are stored, from the section LOPP.
 struct GlintLobesMap {
     // Size in texels.
@@ -307,7 +311,7 @@ fn glint_lobes_seen(query: GlintLobesQuery, lobe: GlintLobe, d: vec2f) -> GlintS
     // Five standard deviations from the rim there is less than 4e-6 beyond it. The twin takes the trace for the largest
     // variance, here it is a row's sum; both leave more lobes to a sum that comes to the same.
     let to_rim = 1.0 - length(mean);
-    let inside = to_rim > 0.0 && to_rim * to_rim > 25.0 * (max(xx, yy) + abs(xy));
+    let inside = !glint_lobes_rim || (to_rim > 0.0 && to_rim * to_rim > 25.0 * (max(xx, yy) + abs(xy)));
     return GlintSeenLobe(share, density, near && !inside, mean, vec3f(xx, xy, yy));
 }
 

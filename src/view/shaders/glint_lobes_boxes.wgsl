@@ -136,7 +136,7 @@ fn glint_lobes_box(
     let e = query.s - mean;
     let far = (yy * e.x * e.x - 2.0 * xy * e.x * e.y + xx * e.y * e.y) * peak * peak;
     let to_rim = 1.0 - length(mean);
-    let inside = to_rim > 0.0 && to_rim * to_rim > 25.0 * (max(xx, yy) + abs(xy));
+    let inside = !glint_lobes_rim || (to_rim > 0.0 && to_rim * to_rim > 25.0 * (max(xx, yy) + abs(xy)));
     let near = far <= GLINT_LOBES_CUT;
     return vec3f(
         select(0.0, share * peak * exp(-0.5 * far), near && inside), share, select(0.0, 1.0, near && !inside),
@@ -247,7 +247,7 @@ fn glint_lobes_boxes(map: GlintLobesMap, query: GlintLobesQuery, edge: f32, reac
         y += edge;
     }
     let found = sum.xy * box.share * vec2f(GLINT_LOBES_PEAK, 1.0);
-    if sum.z > 0.0 {
+    if glint_lobes_rim && sum.z > 0.0 {
         return found + vec2f(glint_lobes_cut_boxes(map, query, edge, reach), 0.0);
     }
     return found;

@@ -126,7 +126,7 @@ fn glint_lobes_cell(
         let seen = glint_lobes_seen(query, lobe, d - lobe.position);
         sum += vec3f(select(seen.density, 0.0, seen.cut), seen.share, select(0.0, 1.0, seen.cut));
     }
-    if sum.z > 0.0 {
+    if glint_lobes_rim && sum.z > 0.0 {
         sum.x += glint_lobes_cut_lobes(map, query, level, first, d);
     }
     return sum.xy;

@@ -2,12 +2,16 @@
 // material.texels_per_unit the map's scale, material.pixel_sigma the pixel's filter. The program
 // takes in glint_lobes_packed.wgsl or glint_lobes_half.wgsl as well, as the pack stores lobes.
 
+// Whether mass beyond the rim is given back, see glint_lobes_rim.
+override LOBES_RIM: bool = true;
+
 fn shade_lobes_footprint(point: ViewPoint) -> GlintFootprint {
     let texels = material.texels_per_unit;
     return glint_footprint_of_pixel(point.uv * texels, point.d_dx * texels, point.d_dy * texels, material.pixel_sigma);
 }
 
 fn shade_reflect(point: ViewPoint, light: vec3f) -> vec3f {
+    glint_lobes_rim = LOBES_RIM;
     let half = glint_half_vector(point.view, light);
     let frame = glint_lobes_frame_in_map(lobes.map, shade_lobes_footprint(point));
     let query = glint_lobes_query(frame, half.xy, material.intrinsic_roughness);

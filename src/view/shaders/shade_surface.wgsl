@@ -2,6 +2,9 @@
 // program takes in glint_lobes_packed.wgsl or glint_lobes_half.wgsl, glint_synthesis_grid.wgsl or glint_synthesis_tiles.wgsl, and
 // glint_surface_blocks.wgsl (or glint_surface_seams.wgsl, at many times the cost near seams) as well.
 
+// Whether mass beyond the rim is given back, see glint_lobes_rim.
+override LOBES_RIM: bool = true;
+
 fn shade_surface_query(point: ViewPoint, s: vec2f) -> GlintSurfaceQuery {
     let texels = material.texels_per_unit;
     let footprint =
@@ -12,6 +15,7 @@ fn shade_surface_query(point: ViewPoint, s: vec2f) -> GlintSurfaceQuery {
 }
 
 fn shade_reflect(point: ViewPoint, light: vec3f) -> vec3f {
+    glint_lobes_rim = LOBES_RIM;
     let half = glint_half_vector(point.view, light);
     return shade_projected(glint_surface_p_ndf(shade_surface_query(point, half.xy)), point, light, half);
 }

@@ -172,6 +172,7 @@ mod tests {
                 material: Material::default(),
                 files: Vec::new(),
                 constants: Vec::new(),
+                rim_roughness: 0.0,
             };
             Ok(Loaded { list: vec![shown], environment: None, notes: Vec::new() })
         })

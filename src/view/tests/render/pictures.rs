@@ -4,6 +4,7 @@ use crate::adapter::gpu;
 use crate::subjects::{camera, mean_radiance, subjects, wall};
 use glam::Vec3;
 use glint_view::render::{Method, Overlay, picture};
+use glint_view::subjects::Subjects;
 
 #[test]
 fn every_method_gives_light_and_the_same_bytes_twice() {
@@ -64,5 +65,31 @@ fn a_glint_takes_more_operations_than_none() {
     assert!(smooth > 50.0 && smooth < 1000.0, "{smooth}");
     for (method, found) in operations.iter().filter(|(method, _)| method.baseline() == Some(Method::Smooth)) {
         assert!(*found > 2.0 * smooth && *found < 1e6, "{method:?}: {found} against {smooth}");
+    }
+}
+
+#[test]
+fn mass_beyond_the_rim_is_left_out_where_it_does_not_show() {
+    let Some(gpu) = gpu() else { return };
+    let mut subjects = subjects(gpu);
+    let has_lobes = |method| matches!(method, Method::Lobes | Method::Surface);
+    let indices: Vec<usize> = (0..subjects.shown.len()).filter(|i| has_lobes(subjects.shown[*i].method)).collect();
+    assert!(indices.len() >= 2);
+    for index in indices {
+        let shown = &subjects.shown[index];
+        assert!(shown.rim_roughness >= shown.material.intrinsic_roughness, "{} keeps it", shown.name);
+        let luminances = |subjects: &Subjects| {
+            let (mesh, _, view) = wall(subjects, index, [96, 64]);
+            let mut renderer = subjects.renderer(gpu, &mesh).unwrap();
+            picture(gpu, &mut renderer, &view, 1).unwrap();
+            let pixels = renderer.radiance(gpu, &view, 0).unwrap();
+            pixels.iter().map(|pixel| f64::from(pixel[1])).collect::<Vec<f64>>()
+        };
+        let without = luminances(&subjects);
+        subjects.shown[index].rim_roughness = 0.0;
+        let with = luminances(&subjects);
+        let apart: f64 = with.iter().zip(&without).map(|(a, b)| (a - b).abs()).sum();
+        let sum: f64 = with.iter().sum();
+        assert!(sum > 0.0 && apart <= 1e-3 * sum, "{}: {apart} of {sum}", subjects.shown[index].name);
     }
 }
