@@ -62,7 +62,11 @@ fn main() {
 fn report(data: &Path, svg: Option<&str>) {
     println!("# Area lights: error over distance\n");
     println!("Written by `just report`; do not edit. The plot is [area-light-report.svg](area-light-report.svg).");
-    println!("Release build, lto {LTO}.\n");
+    if cfg!(debug_assertions) {
+        println!("Development build, the library optimised.\n");
+    } else {
+        println!("Release build, lto {LTO}.\n");
+    }
     let tables = decode_tables(&LtcTables::built_in());
     lobes();
     table_quality();

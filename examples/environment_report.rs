@@ -40,7 +40,9 @@ fn main() {
         .map(|entries| entries.filter_map(|entry| Some(entry.ok()?.path())).collect())
         .unwrap_or_default();
     paths.sort();
-    let mut text = format!("{HEAD}\nRelease build, lto {LTO}.\n");
+    let release = format!("Release build, lto {LTO}.");
+    let build = if cfg!(debug_assertions) { "Development build, the library optimised." } else { &release };
+    let mut text = format!("{HEAD}\n{build}\n");
     let (mut defaults, mut filters, mut mips, mut moments) = Default::default();
     let mut points = Vec::new();
     for path in &paths {
