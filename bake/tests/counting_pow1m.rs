@@ -1,9 +1,10 @@
 //! (1 − p)^N, p^N and their complements in f32, with this processor's functions and with the least exact ones of WGSL.
 
-use glint_bake_core::counting::pow1m::{Elementary, Native, one_minus_pow1m_with, pow1m_with};
+use glint_bake_core::counting::pow1m::{Elementary, Native, halved, halvings, one_minus_pow1m_with, pow1m_with};
 use glint_bake_core::counting::wgsl::LeastExact;
 use glint_bake_core::counting::{one_minus_pow1m, pow1m};
 use libm::{exp, exp10, expm1, log, log1p};
+use std::f64::consts::LN_2;
 
 /// −ln(1 − p) in f64, from whichever of p and q is given exactly.
 fn exact_log(p: f32, q: f32) -> f64 {
@@ -87,6 +88,23 @@ fn a_small_complement_keeps_its_digits() {
             assert!(relative.abs() < 2e-6, "{math:?} p {p:e} n {n:e}: {relative:e}");
         }
     }
+}
+
+/// What draws take, by powers of 2.
+#[test]
+fn halvings_and_halved_keep_their_digits() {
+    let mut worst = [0.0f64; 3];
+    for i in 0..=200_000 {
+        let p = (0.5 * exp10(-8.0 * f64::from(i) / 200_000.0)) as f32;
+        let exact = -log1p(f64::from(-p)) / LN_2;
+        worst[0] = worst[0].max((f64::from(halvings(p)) / exact - 1.0).abs());
+        let y = (125.0 * exp10(-9.0 * f64::from(i) / 200_000.0)) as f32;
+        let [left, lost] = halved(y).map(f64::from);
+        worst[1] = worst[1].max((left / exp(-f64::from(y) * LN_2) - 1.0).abs());
+        worst[2] = worst[2].max((lost / -expm1(-f64::from(y) * LN_2) - 1.0).abs());
+    }
+    println!("halvings {:.1e}, halved {:.1e}, lost {:.1e}", worst[0], worst[1], worst[2]);
+    assert!(worst[0] < 4e-7 && worst[1] < 6e-7 && worst[2] < 6e-7, "{worst:?}");
 }
 
 #[test]

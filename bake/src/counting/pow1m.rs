@@ -81,7 +81,7 @@ pub fn one_minus_exp(math: &impl Elementary, x: f32) -> f32 {
     x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * series)))
 }
 
-/// −log₂(1 − p) for p ≤ ½, to 2e-7 of itself: how often one trial halves the chance of no hit.
+/// −log₂(1 − p) for p ≤ ½, to 4e-7 of itself: how often one trial halves the chance of no hit.
 ///
 /// Terms go by pairs, which is a short chain of operations.
 pub fn halvings(p: f32) -> f32 {
@@ -103,7 +103,7 @@ pub fn digits(x: f32) -> [f32; 2] {
 /// Most halvings whose power is a normal number.
 pub const MOST_HALVINGS: f32 = 125.0;
 
-/// 2^−y and 1 − 2^−y for y from 0 to 126, both to 4e-7 of themselves.
+/// 2^−y and 1 − 2^−y for y from 0 to 126, both to 6e-7 of themselves.
 pub fn halved(y: f32) -> [f32; 2] {
     let whole = y.floor();
     let f = y - whole;

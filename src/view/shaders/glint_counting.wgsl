@@ -75,7 +75,7 @@ fn glint_units_from_bits(bits: vec4u) -> vec4f {
     return min((vec4f(bits) + 0.5) * (1.0 / 4294967296.0), vec4f(0.99999994));
 }
 
-// -log2(1 - p) of p <= 1/2, to 2e-7 of itself.
+// -log2(1 - p) of p <= 1/2, to 4e-7 of itself.
 fn glint_halvings(p: vec4f) -> vec4f {
     // Powers of less would be subnormal numbers, which take some processors long and add nothing.
     let least = max(p, vec4f(1.0e-9));
@@ -110,7 +110,7 @@ struct GlintHalved {
     lost: vec4f,
 }
 
-// 2^-y and 1 - 2^-y for y from 0 to 126, to 4e-7 of themselves.
+// 2^-y and 1 - 2^-y for y from 0 to 126, to 6e-7 of themselves.
 fn glint_halved(y: vec4f) -> GlintHalved {
     let whole = floor(y);
     let f = y - whole;
