@@ -11,7 +11,8 @@ use glint_formats::Pack;
 use glint_formats::lobes::LobesParams;
 use std::rc::Rc;
 
-/// Share of a map beyond the rim of the disk of normals that pictures of lobes do not give back: less than the digits of a pixel.
+/// Share of a map beyond the rim of the disk of normals that pictures of lobes do not give back: less than a step of 8 bits on the
+/// map's average, more where its few steep normals are.
 const BEYOND_RIM: f32 = 1e-4;
 
 /// All that can be shown, and the environment that can light it.

@@ -61,8 +61,9 @@ struct GlintLevels {
     d: vec4f,
 }
 
-// Random words of a draw of up to sixteen levels: uniform numbers in (0, 1), with the more digits the smaller they are. Word 0 makes
-// the facets whole and is small where there is one more; word i draws node i of the tree and is small where the right branch gets more.
+// Random words of a draw of up to sixteen levels: uniform numbers above 0 and at most 1, with the more digits the smaller they
+// are. Word 0 makes the facets whole and is small where there is one more; word i draws node i of the tree and is small where the right
+// branch gets more.
 struct GlintWords {
     a: vec4f,
     b: vec4f,
