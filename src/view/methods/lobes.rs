@@ -6,8 +6,8 @@ use glint_bake_core::lobes::BakedLobes;
 use glint_bake_core::lobes::quantise::nominal_extent;
 use glint_bake_core::surface::Surface;
 use glint_bake_core::synthesis::Synthesis;
+use glint_formats::Wrap;
 use glint_formats::lobes::{Filter, LobeLevel, LobeStorage, LobesParams, NormalsStorage};
-use glint_formats::ndf_maps::Wrap;
 use glint_formats::synthesis::Layout;
 
 /// Most levels: cells of 4 texels doubled to the largest map, and the whole of a surface.

@@ -4,7 +4,10 @@
 //! always there; `PLACEMENT`, `PALETTE`, `NOISE` and `CLASSES` say how a surface is covered with examples.
 //! Method: Xing et al. 2024, sections 5 and 6; what we store differs from the paper as `docs/METHODS.md` says.
 
-use crate::container::FourCc;
+pub(crate) mod check;
+
+use crate::container::{FourCc, KnownKind};
+use crate::wrap::Wrap;
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
 
@@ -27,14 +30,18 @@ pub const CLASSES: FourCc = FourCc(*b"PLCL");
 /// Two-layer material: [`LayeredMaterial`], bincode.
 pub const LAYERS: FourCc = FourCc(*b"LAYR");
 
-/// What lies beyond a map's edge.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Wrap {
-    /// The map repeats.
-    Repeat,
-    /// The edge texel goes on.
-    Clamp,
-}
+/// The kinds of sections of this method.
+pub(crate) const KINDS: &[KnownKind] = &[
+    KnownKind::first(PARAMS, "NDF map parameters"),
+    KnownKind::first(TILES, "NDF map tiles"),
+    KnownKind::first(DENSITY, "NDF map density"),
+    KnownKind::first(NORMALS, "example normals"),
+    KnownKind::first(PLACEMENT, "placement parameters"),
+    KnownKind::first(PALETTE, "placement palette"),
+    KnownKind::first(NOISE, "placement noise map"),
+    KnownKind::first(CLASSES, "placement class map"),
+    KnownKind::first(LAYERS, "layered material"),
+];
 
 /// How density texels are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

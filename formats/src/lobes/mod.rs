@@ -4,9 +4,11 @@
 //! 4D Gaussian over position u (texels) and projected normal s. Its normal part leaves the intrinsic roughness σ_r out,
 //! which the evaluator adds. The finest level has no lobes: its lobes follow from the normals at run time.
 
-use crate::container::{FourCc, Resource};
-use crate::ndf_maps::Wrap;
+pub(crate) mod check;
+
+use crate::container::{FourCc, KnownKind, Resource};
 use crate::vk_format;
+use crate::wrap::Wrap;
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +19,13 @@ pub const PARAMS: FourCc = FourCc(*b"LOPP");
 pub const LOBES: FourCc = FourCc(*b"LOBE");
 /// The map's projected normals (n_x, n_y): texture of the format of [`NormalsStorage`], width × height texels.
 pub const NORMALS: FourCc = FourCc(*b"LONM");
+
+/// The kinds of sections of this method.
+pub(crate) const KINDS: &[KnownKind] = &[
+    KnownKind::first(PARAMS, "lobe parameters"),
+    KnownKind::first(LOBES, "lobes"),
+    KnownKind::first(NORMALS, "lobe normals"),
+];
 /// Largest width or height of a map.
 pub const MAX_TEXTURE_SIZE: u32 = 16_384;
 /// Most lobes a cell.

@@ -1,12 +1,13 @@
 //! Checks the contents of lobe sections: what an evaluator relies on when it walks cells and decodes lobes.
 
+use crate::bytes::u16_at;
 use crate::issue::{Issue, IssueCode};
 use crate::lobes::{
     HalfLobe, LOBES, LobeLevel, LobeStorage, LobesParams, MAX_LAST_CELLS, MAX_LOBES_PER_CELL, MAX_SIGMA_RATIO,
     MAX_TEXTURE_SIZE, NORMALS, NormalsStorage, PARAMS, PackedLobe,
 };
-use crate::ndf_maps::Wrap;
 use crate::sections::{Loaded, Sections};
+use crate::wrap::Wrap;
 use half::f16;
 
 /// Longest projected normal that rounding can make of 1.
@@ -150,7 +151,7 @@ fn check_lobes(section: Loaded<'_>, params: &LobesParams, issues: &mut Vec<Issue
     let mut fault = None;
     let mut empty = None;
     let cell_bytes = params.lobes_per_cell as usize * params.storage.stride() as usize;
-    for (cell, bytes) in section.bytes().chunks_exact(cell_bytes).enumerate() {
+    for (cell, bytes) in section.payload.chunks_exact(cell_bytes).enumerate() {
         let mut lobes = 0;
         for (k, bytes) in bytes.chunks_exact(params.storage.stride() as usize).enumerate() {
             let (weight, why) = match params.storage {
@@ -203,11 +204,9 @@ fn check_normals(section: Loaded<'_>, params: &LobesParams, issues: &mut Vec<Iss
     if !section.expect(IssueCode::LobesNormalsShape, shape, issues) {
         return;
     }
-    for (at, bytes) in section.bytes().chunks_exact(params.normals.texel_bytes()).enumerate() {
+    for (at, bytes) in section.payload.chunks_exact(params.normals.texel_bytes()).enumerate() {
         let [x, y] = match params.normals {
-            NormalsStorage::Snorm16 => {
-                [0, 2].map(|k| f32::from(i16::from_le_bytes([bytes[k], bytes[k + 1]])) / 32767.0)
-            }
+            NormalsStorage::Snorm16 => [0, 2].map(|k| f32::from(u16_at(bytes, k) as i16) / 32767.0),
             NormalsStorage::Unorm8 => [0, 1].map(|k| f32::from(bytes[k]) / 255.0 * 2.0 - 1.0),
         };
         if x * x + y * y > LONGEST * LONGEST {

@@ -3,7 +3,9 @@
 //!
 //! Method: Kneiphof and Klein 2025, sections 3.4 and 5; what we store differs from the paper as `docs/METHODS.md` says.
 
-use crate::container::{FourCc, Resource};
+pub(crate) mod check;
+
+use crate::container::{FourCc, KnownKind, Resource};
 use crate::vk_format;
 use serde::{Deserialize, Serialize};
 
@@ -22,6 +24,15 @@ pub const COLOURS: FourCc = FourCc(*b"ENCO");
 /// Column i is cos θ_o = (i + ½) / size, row j is roughness α = ((j + ½) / size)². R and G: albedo is F₀ R + G under
 /// Schlick's Fresnel factor. B: visible reflecting area E_D. A: whole facet area D_H.
 pub const ALBEDO: FourCc = FourCc(*b"ENAL");
+
+/// The kinds of sections of this method.
+pub(crate) const KINDS: &[KnownKind] = &[
+    KnownKind::first(PARAMS, "environment parameters"),
+    KnownKind::first(RADIANCE, "environment radiance"),
+    KnownKind::first(INDICATORS, "environment indicators"),
+    KnownKind::first(COLOURS, "environment colours"),
+    KnownKind::first(ALBEDO, "environment albedo"),
+];
 /// VkFormat of the albedo table: R16G16B16A16_SFLOAT.
 pub const ALBEDO_VK_FORMAT: u32 = vk_format::R16G16B16A16_SFLOAT;
 /// VkFormat of level colours: E5B9G9R9_UFLOAT_PACK32.

@@ -3,7 +3,9 @@
 //! Method: Chermain et al. 2020, sections 4 and 7.3; what we store differs from the paper as `docs/METHODS.md` says.
 //! A dictionary is independent of roughness, density and surface: one serves a whole scene.
 
-use crate::container::FourCc;
+pub(crate) mod check;
+
+use crate::container::{FourCc, KnownKind};
 use crate::vk_format;
 use serde::{Deserialize, Serialize};
 
@@ -14,6 +16,10 @@ pub const PARAMS: FourCc = FourCc(*b"SDPP");
 /// Row `level · marginals + marginal` is P(x) at slopes x = (b + ½) · domain / entries for texel b, to be read with
 /// linear filtering and clamp to edge at u = x / domain, for x from 0 to `domain`. P is even, and zero beyond `domain`.
 pub const TABLE: FourCc = FourCc(*b"SDTB");
+
+/// The kinds of sections of this method.
+pub(crate) const KINDS: &[KnownKind] =
+    &[KnownKind::first(PARAMS, "dictionary parameters"), KnownKind::first(TABLE, "dictionary table")];
 /// VkFormat of the table: R16_SFLOAT.
 pub const TABLE_VK_FORMAT: u32 = vk_format::R16_SFLOAT;
 /// Largest width or height of the table: what every WebGPU device offers.

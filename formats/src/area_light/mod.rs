@@ -3,9 +3,12 @@
 //! Method: Tao et al. 2021, with the tables of Heitz et al. 2016; what we store differs from the paper as
 //! `docs/METHODS.md` says. The tables are the same in every pack and depend on nothing but GGX.
 
-use crate::container::FourCc;
-use crate::ndf_maps::Wrap;
+pub(crate) mod check;
+
+use crate::bytes::f16_at;
+use crate::container::{FourCc, KnownKind};
 use crate::vk_format;
+use crate::wrap::Wrap;
 use serde::{Deserialize, Serialize};
 
 /// Parameters of an area-light material: [`AreaLightParams`], bincode.
@@ -25,6 +28,15 @@ pub const ROUGHNESS: FourCc = FourCc(*b"ALRO");
 pub const INVERSE: FourCc = FourCc(*b"ALLI");
 /// Magnitude, Fresnel term, 0 and clipped form factor: texture like [`INVERSE`].
 pub const TERMS: FourCc = FourCc(*b"ALLT");
+
+/// The kinds of sections of this method.
+pub(crate) const KINDS: &[KnownKind] = &[
+    KnownKind::first(PARAMS, "area light parameters"),
+    KnownKind::first(NORMALS, "area light normals"),
+    KnownKind::first(ROUGHNESS, "area light roughness"),
+    KnownKind::first(INVERSE, "LTC inverse matrices"),
+    KnownKind::first(TERMS, "LTC terms"),
+];
 /// VkFormat of the LTC tables: R16G16B16A16_SFLOAT.
 pub const TABLE_VK_FORMAT: u32 = vk_format::R16G16B16A16_SFLOAT;
 /// Width and height of the LTC tables.
@@ -63,7 +75,7 @@ impl NormalStorage {
     #[inline]
     pub fn decode(self, bytes: &[u8]) -> [f32; 4] {
         std::array::from_fn(|k| match self {
-            NormalStorage::F16 => half::f16::from_le_bytes([bytes[2 * k], bytes[2 * k + 1]]).to_f32(),
+            NormalStorage::F16 => f16_at(bytes, 2 * k),
             NormalStorage::Snorm8 => (f32::from(bytes[k] as i8) / 127.0).max(-1.0),
         })
     }

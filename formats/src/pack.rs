@@ -1,9 +1,9 @@
 //! A pack that was opened: its sections, found by kind and name, and their payloads without a copy where possible.
 
-use super::mmap::Bytes;
-use super::{FourCc, Limits, SectionEntry, Structure, payload};
+use crate::container::{Bytes, FourCc, Limits, SectionEntry, Structure, read_payload};
 use crate::error::OpenError;
 use crate::issue::Issue;
+use crate::kinds;
 use crate::verify;
 use std::borrow::Cow;
 use std::collections::HashSet;
@@ -29,7 +29,7 @@ impl Pack {
     }
 
     fn new(bytes: Bytes, limits: &Limits) -> Result<Pack, Vec<Issue>> {
-        let structure = Structure::read(&bytes, limits)?;
+        let structure = Structure::read(&bytes, limits, kinds::check)?;
         Ok(Pack { bytes, structure })
     }
 
@@ -74,7 +74,7 @@ impl Pack {
     /// Payload of a section of this pack: borrowed when it is stored as it is, decompressed otherwise. The checksum is
     /// checked on every call.
     pub fn payload(&self, entry: &SectionEntry) -> Result<Cow<'_, [u8]>, Issue> {
-        payload::read(&self.bytes, entry)
+        read_payload(&self.bytes, entry)
     }
 
     /// Checks everything that opening did not: checksums, compression and the contents of known sections.

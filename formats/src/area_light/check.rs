@@ -3,10 +3,10 @@
 use crate::area_light::{
     AreaLightParams, INVERSE, MAX_TEXTURE_SIZE, NORMALS, PARAMS, ROUGHNESS, TABLE_SIZE, TABLE_VK_FORMAT, TERMS,
 };
+use crate::bytes::f16_at;
 use crate::container::{Resource, full_mip_count};
 use crate::issue::{Issue, IssueCode};
 use crate::sections::{Loaded, Sections};
-use half::f16;
 
 /// Longest mean normal, and largest eigenvalue of a roughness, that rounding can make of 1.
 const LONGEST: f32 = 1.02;
@@ -114,7 +114,7 @@ fn roughness_fault(texel: [f32; 4]) -> Option<&'static str> {
 }
 
 fn check_texels(section: Loaded<'_>, params: &AreaLightParams, code: IssueCode, fault: Fault, issues: &mut Vec<Issue>) {
-    let mut bytes = section.bytes().chunks_exact(params.storage.texel_bytes());
+    let mut bytes = section.payload.chunks_exact(params.storage.texel_bytes());
     for mip in 0..full_mip_count(params.width, params.height) {
         let (width, height) = ((params.width >> mip).max(1), (params.height >> mip).max(1));
         for (at, bytes) in bytes.by_ref().take(width as usize * height as usize).enumerate() {
@@ -146,8 +146,8 @@ fn terms_fault(texel: [f32; 4]) -> Option<&'static str> {
 }
 
 fn check_table(section: Loaded<'_>, fault: Fault, issues: &mut Vec<Issue>) {
-    for (at, bytes) in section.bytes().chunks_exact(8).enumerate() {
-        let texel: [f32; 4] = std::array::from_fn(|k| f16::from_le_bytes([bytes[2 * k], bytes[2 * k + 1]]).to_f32());
+    for (at, bytes) in section.payload.chunks_exact(8).enumerate() {
+        let texel: [f32; 4] = std::array::from_fn(|k| f16_at(bytes, 2 * k));
         if let Some(expected) = fault(texel) {
             let (x, y) = (at % TABLE_SIZE as usize, at / TABLE_SIZE as usize);
             issues.push(

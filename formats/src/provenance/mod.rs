@@ -1,13 +1,16 @@
 //! Where a pack comes from: tool, options and inputs. Nothing that differs between equal bakes is recorded.
 
-use crate::container::FourCc;
-use crate::issue::{Issue, IssueCode};
-use crate::sections::Sections;
+pub(crate) mod check;
+
+use crate::container::{FourCc, KnownKind};
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_128;
 
 /// Provenance: [`Provenance`], bincode.
 pub const PROVENANCE: FourCc = FourCc(*b"PROV");
+
+/// The one kind of provenance.
+pub(crate) const KINDS: &[KnownKind] = &[KnownKind::first(PROVENANCE, "provenance")];
 
 /// Where a pack, or one material of it, comes from. No time stamps, host names or folders: equal inputs give equal
 /// packs.
@@ -47,27 +50,4 @@ impl InputDigest {
     pub fn of(name: &str, bytes: &[u8]) -> InputDigest {
         InputDigest { name: name.to_owned(), xxh3_128: format!("{:032x}", xxh3_128(bytes)), bytes: bytes.len() as u64 }
     }
-}
-
-/// Checks every provenance section.
-pub(crate) fn check(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
-    for section in sections.of_kind(PROVENANCE) {
-        let Some(provenance) = section.parameters::<Provenance>(issues) else { continue };
-        for input in &provenance.inputs {
-            if let Err(why) = check_input(input) {
-                issues.push(section.error(IssueCode::BadProvenance, why));
-            }
-        }
-    }
-}
-
-fn check_input(input: &InputDigest) -> Result<(), String> {
-    if input.name.contains(['/', '\\']) {
-        return Err(format!("expected a file name without folders, found {:?}", input.name));
-    }
-    let is_digit = |byte: u8| byte.is_ascii_digit() || (b'a'..=b'f').contains(&byte);
-    if input.xxh3_128.len() != 32 || !input.xxh3_128.bytes().all(is_digit) {
-        return Err(format!("expected a digest of 32 lower-case hex digits, found {:?}", input.xxh3_128));
-    }
-    Ok(())
 }

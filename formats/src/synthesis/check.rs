@@ -1,13 +1,17 @@
 //! Checks the contents of synthesis sections: what a look-up relies on when it finds the sample texel of a surface texel.
 
+use crate::bytes::{u16_at, u32_at};
 use crate::container::Resource;
 use crate::issue::{Issue, IssueCode};
-use crate::ndf_maps::Wrap;
+use crate::lobes::{self, LobesParams};
+use crate::params;
 use crate::sections::{Loaded, Sections};
 use crate::synthesis::{
     Layout, MAX_COLOURS, MAX_OVERLAP, MAX_PATCHES, MAX_SAMPLE_SIZE, MAX_VARIANTS, OFFSETS, PARAMS, PATCH_RANGE,
     PathShape, SEAMS, SynthesisParams,
 };
+use crate::wrap::Wrap;
+use serde::de::DeserializeOwned;
 
 /// Checks every synthesis.
 pub(crate) fn check(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
@@ -15,6 +19,7 @@ pub(crate) fn check(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
         check_synthesis(sections, section, issues);
     }
     sections.report_orphans(&[OFFSETS, SEAMS], PARAMS, issues);
+    check_surfaces(sections, issues);
 }
 
 fn check_synthesis(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec<Issue>) {
@@ -106,8 +111,8 @@ fn check_layout(params: &SynthesisParams) -> Result<(), String> {
 /// Reports the first offset whose patch does not lie in the sample.
 fn check_offsets(section: Loaded<'_>, params: &SynthesisParams, issues: &mut Vec<Issue>) {
     let sides = [params.sample_width, params.sample_height];
-    for (at, bytes) in section.bytes().chunks_exact(4).enumerate() {
-        let offset = [u16::from_le_bytes([bytes[0], bytes[1]]), u16::from_le_bytes([bytes[2], bytes[3]])];
+    for (at, bytes) in section.payload.chunks_exact(4).enumerate() {
+        let offset = [u16_at(bytes, 0), u16_at(bytes, 2)];
         let sound = offset.iter().zip(sides).all(|(&found, side)| {
             let found = u32::from(found);
             let (first, last) = match params.wrap {
@@ -129,7 +134,7 @@ fn check_offsets(section: Loaded<'_>, params: &SynthesisParams, issues: &mut Vec
 
 /// Reports the first path that jumps, leaves the overlap, or has bits set that mean nothing.
 fn check_seams(section: Loaded<'_>, params: &SynthesisParams, issues: &mut Vec<Issue>) {
-    let mut words = section.bytes().chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    let mut words = section.payload.chunks_exact(4).map(|bytes| u32_at(bytes, 0));
     let groups = match params.layout {
         Layout::Patches { .. } => vec![(2 * params.offset_count(), params.patch_path())],
         Layout::CornerTiles { colours, margin, .. } => {
@@ -169,4 +174,49 @@ fn path_fault(words: &mut impl Iterator<Item = u32>, shape: PathShape, overlap: 
         }
     }
     None
+}
+
+/// Checks that lobes and synthesis of one name are one surface, so that a query may read the cells that a look-up names. Sections that do not decode are reported by their own checks.
+fn check_surfaces(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
+    for section in sections.of_kind(lobes::PARAMS) {
+        let Some(params) = decoded::<LobesParams>(section.payload) else { continue };
+        if params.step_texels == 0 {
+            continue;
+        }
+        let Some(surface) = sections.need(PARAMS, section, issues) else { continue };
+        let Some(surface) = decoded::<SynthesisParams>(surface.payload) else { continue };
+        if let Err(why) = check_surface(&params, &surface) {
+            issues.push(section.error(IssueCode::SurfaceMismatch, why));
+        }
+    }
+}
+
+fn decoded<T: DeserializeOwned>(payload: &[u8]) -> Option<T> {
+    params::decode(payload).ok()
+}
+
+fn check_surface(params: &LobesParams, surface: &SynthesisParams) -> Result<(), String> {
+    let (sample, map) = ((surface.sample_width, surface.sample_height), (params.width, params.height));
+    if sample != map {
+        return Err(format!(
+            "the surface is of a sample of {} × {}, the lobes of {} × {}",
+            sample.0, sample.1, map.0, map.1
+        ));
+    }
+    if surface.wrap != params.wrap {
+        return Err(format!(
+            "the surface is of a sample that is {:?}, the lobes of one {:?}",
+            surface.wrap, params.wrap
+        ));
+    }
+    if surface.alignment != params.step_texels {
+        let (alignment, step) = (surface.alignment, params.step_texels);
+        return Err(format!("offsets of patches are multiples of {alignment}, cells of {step}"));
+    }
+    let Some((_, cells)) = params.levels.split_last() else { return Ok(()) };
+    match cells.iter().find(|level| level.cell_texels == 0 || !surface.patch.is_multiple_of(level.cell_texels)) {
+        Some(level) => Err(format!("a patch of {} is no multiple of a cell of {}", surface.patch, level.cell_texels)),
+        None if cells.is_empty() => Err(String::from("expected a level of cells before that of the whole surface")),
+        None => Ok(()),
+    }
 }

@@ -4,8 +4,10 @@
 //! Method: Tan et al. 2022, section 5.1.1; what we store differs from the paper as `docs/METHODS.md` says. Nothing here
 //! depends on what a texel holds: normals, lobes and their MIP are read through the same look-up.
 
-use crate::container::FourCc;
-use crate::ndf_maps::Wrap;
+pub(crate) mod check;
+
+use crate::container::{FourCc, KnownKind};
+use crate::wrap::Wrap;
 use serde::{Deserialize, Serialize};
 
 /// Parameters of a synthesis: [`SynthesisParams`], bincode.
@@ -16,6 +18,13 @@ pub const PARAMS: FourCc = FourCc(*b"SYPP");
 pub const OFFSETS: FourCc = FourCc(*b"SYPO");
 /// Seam paths: buffer of u32, stride 4, see [`SynthesisParams::seam_words`] and [`PathShape`].
 pub const SEAMS: FourCc = FourCc(*b"SYSE");
+
+/// The kinds of sections of this method.
+pub(crate) const KINDS: &[KnownKind] = &[
+    KnownKind::first(PARAMS, "synthesis parameters"),
+    KnownKind::first(OFFSETS, "synthesis patch offsets"),
+    KnownKind::first(SEAMS, "synthesis seam paths"),
+];
 
 /// Largest width or height of the sample.
 pub const MAX_SAMPLE_SIZE: u32 = 16_384;

@@ -1,10 +1,10 @@
 //! Checks the contents of dictionary sections: what a sampler relies on when it reads a marginal.
 
+use crate::bytes::f16_at;
 use crate::container::Resource;
 use crate::dictionary::{DictionaryParams, MAX_TEXTURE_SIZE, PARAMS, ROW_TOLERANCE, TABLE, TABLE_VK_FORMAT};
 use crate::issue::{Issue, IssueCode};
 use crate::sections::{Loaded, Sections};
-use half::f16;
 
 /// Checks every dictionary.
 pub(crate) fn check(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
@@ -65,10 +65,10 @@ fn check_parameters(params: &DictionaryParams) -> Result<(), String> {
 fn check_rows(table: Loaded<'_>, params: &DictionaryParams, issues: &mut Vec<Issue>) {
     let spacing = params.domain / f64::from(params.entries);
     let mut first_unequal = None;
-    for (row, bytes) in table.bytes().chunks_exact(2 * params.entries as usize).enumerate() {
+    for (row, bytes) in table.payload.chunks_exact(2 * params.entries as usize).enumerate() {
         let mut sum = 0.0;
         for (texel, bytes) in bytes.chunks_exact(2).enumerate() {
-            let value = f16::from_le_bytes([bytes[0], bytes[1]]).to_f64();
+            let value = f64::from(f16_at(bytes, 0));
             if !(value >= 0.0 && value.is_finite()) {
                 let message = format!(
                     "texel {texel} of row {row}: expected a finite density that is not negative, found {value}"

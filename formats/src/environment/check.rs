@@ -1,12 +1,12 @@
 //! Checks the contents of environment sections: what a sampler and a counting model rely on.
 
+use crate::bytes::{f16_at, f32_at, u16_at};
 use crate::container::full_mip_count;
 use crate::environment::{
     ALBEDO, COLOURS, EnvironmentParams, INDICATORS, MAX_FACE_SIZE, MAX_LEVELS, PARAMS, RADIANCE, Storage,
 };
 use crate::issue::{Issue, IssueCode};
 use crate::sections::{Loaded, Sections};
-use half::f16;
 
 /// Checks every environment.
 pub(crate) fn check(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
@@ -106,17 +106,13 @@ fn check_levels(levels: &[f64]) -> Result<(), String> {
 
 /// One stored number.
 fn number(bytes: &[u8]) -> f32 {
-    match *bytes {
-        [a, b] => f16::from_le_bytes([a, b]).to_f32(),
-        [a, b, c, d] => f32::from_le_bytes([a, b, c, d]),
-        _ => f32::NAN,
-    }
+    if bytes.len() == 2 { f16_at(bytes, 0) } else { f32_at(bytes, 0) }
 }
 
 /// Reports the first number that is negative or not finite.
 fn check_values(section: Loaded<'_>, wide: bool, code: IssueCode, issues: &mut Vec<Issue>) {
     let bytes = if wide { 4 } else { 2 };
-    for (i, chunk) in section.bytes().chunks_exact(bytes).enumerate() {
+    for (i, chunk) in section.payload.chunks_exact(bytes).enumerate() {
         let value = number(chunk);
         if !(value >= 0.0 && value.is_finite()) {
             let message = format!(
@@ -133,12 +129,12 @@ fn check_values(section: Loaded<'_>, wide: bool, code: IssueCode, issues: &mut V
 /// Reports the first texel whose indicators are no shares of a whole. What is left of 1 is the darkest level's.
 fn check_indicators(section: Loaded<'_>, params: &EnvironmentParams, issues: &mut Vec<Issue>) {
     let layers = params.indicator_layers() as usize;
-    let bytes = section.bytes();
+    let bytes = section.payload;
     let component = if params.storage == Storage::F32 { 4 } else { 2 };
     let value = |texel: usize, c: usize| {
         let at = (4 * texel + c) * component;
         match params.storage {
-            Storage::Unorm16 => f64::from(u16::from_le_bytes([bytes[at], bytes[at + 1]])) / 65535.0,
+            Storage::Unorm16 => f64::from(u16_at(bytes, at)) / 65535.0,
             _ => f64::from(number(&bytes[at..at + component])),
         }
     };
