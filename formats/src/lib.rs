@@ -9,6 +9,7 @@
 compile_error!("glint-formats reads little-endian records in place and is not written for big-endian machines");
 
 pub mod area_light;
+pub mod binding;
 mod bytes;
 pub mod container;
 pub mod dictionary;

@@ -1,6 +1,8 @@
 // A surface of examples placed at random at a few places under a footprint, each seen as one tile: for real-time settings. Twin of
 // glint-bake-core ndf_maps/probes.rs; a deviation from Xing et al. 2024, section 6.3, which sums every tile of every sub-region.
 
+#import ndf_maps::regions
+
 // Places lie within this many standard deviations of the footprint's centre; with their tiles they spread as it does.
 const GLINT_NDF_PROBE_REACH: f32 = 1.5;
 // Edge of their tiles, at most, and their distance along the major axis, relative to that along the minor axis.

@@ -14,6 +14,9 @@
 // Both read little-endian sections as they lie in the pack; GlintNdfMaterial says where each begins. Several materials may
 // share the two buffers.
 
+#import ndf_maps::tiled
+#import ndf_maps::stochastic
+
 // The density over the disk of projected normals, at `s`, of what lies under a footprint (surface texels); 0 outside the disk.
 // Also the number of tiles and lobes that it took.
 fn glint_ndf_density(

@@ -1,6 +1,9 @@
 // A small box of the example as one lobe: its normals fill a parallelogram evenly, convolved with the intrinsic roughness. Xing et
 // al. 2024, Eq. 1; twin of `LobeTerm` in glint-bake-core ndf_maps/eval.rs.
 
+#import ndf_maps::material
+#import erf
+
 // Projected normal of texel (i, j), at most one texel outside the example.
 fn glint_ndf_normal(material: GlintNdfMaterial, at: vec2i) -> vec2f {
     let size = vec2i(material.size);

@@ -1,6 +1,8 @@
 // A footprint as an ellipse, and one tile or box under it: what glint_ndf_maps.wgsl walks over.
 // Twin of glint-bake-core ndf_maps/ellipse.rs. No accessors; lengths are texels.
 
+#import footprint
+
 // In estimates of how many there are, pieces lie within this many standard deviations of the footprint's centre.
 const GLINT_NDF_REACH: f32 = 2.8;
 // Finest boxes: below this edge positions have no digits left.

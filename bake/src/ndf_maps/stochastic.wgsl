@@ -1,6 +1,9 @@
 // A surface of examples placed at random: whether a footprint sees sub-regions, places or shares of transforms. Xing et al. 2024,
 // section 6.3; twin of glint-bake-core ndf_maps/surface.rs.
 
+#import ndf_maps::classes
+#import ndf_maps::probes
+
 fn glint_ndf_stochastic(
     material: GlintNdfMaterial,
     footprint: GlintFootprint,

@@ -4,6 +4,8 @@
 // of lobes that lie where the surface shows that patch. Smaller blocks are read by blocks of the finest level, and those by
 // boxes of a texel.
 
+#import surface::query
+
 // Density and share of a block, if it could be read as a whole.
 struct GlintSurfaceBlock {
     found: bool,

@@ -5,6 +5,9 @@
 //
 // Pure functions, no accessors. Places in surface units, those of the density.
 
+#import hash
+#import counting::eval
+
 // Largest |level|; the edge of a cell is 2^level surface units.
 const GLINT_SURFACE_MAX_LEVEL: f32 = 24.0;
 // Most facets of a draw.

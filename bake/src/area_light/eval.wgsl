@@ -11,6 +11,8 @@
 //   fn glint_area_light_roughness(position: vec2f, level: f32) -> vec4f
 //       section ALRO, read alike; called only where maps.anisotropic is 1
 
+#import area_light::rect
+
 // Most lobes of roughness by direction.
 const GLINT_MAX_LOBES: u32 = 9u;
 // Deficit of a lobe of roughness 1.

@@ -1,6 +1,8 @@
 // Density of one NDF tile, decoded and filtered as it is stored. Xing et al. 2024, section 5; twin of glint-bake-core
 // ndf_maps/{eval,spline}.rs.
 
+#import ndf_maps::material
+
 // Quadratic B-splines at p, in node distances from node 0: weights of the nodes floor(p + 1/2) - 1 and the next two.
 fn glint_ndf_spline(p: f32) -> vec3f {
     let f = p - floor(p + 0.5);

@@ -1,6 +1,8 @@
 // Lobes of 32 bytes: one of the two ways that a pack stores them, for glint_lobes.wgsl. Twin of glint-bake-core
 // lobes/quantise.rs; the record is that of FORMAT.md, section LOBE.
 
+#import lobes::eval
+
 // A lobe by its index among all; `level` is its level.
 fn glint_lobes_lobe(map: GlintLobesMap, level: GlintLobesLevel, index: u32) -> GlintLobe {
     let low = glint_lobes_words(2u * index);

@@ -1,6 +1,8 @@
 // A block of a synthesised surface as if it had no seams: one of the two ways to read a surface, for glint_surface.wgsl. Twin of
 // glint-bake-core surface/query.rs with `whole_blocks`.
 
+#import surface::query
+
 // Density and share of a block: the cell of the sample at which the patch at the block's middle begins there, or the last
 // before it.
 fn glint_surface_block(q: GlintSurfaceQuery, level_index: u32, place: vec2i, whole: bool) -> vec2f {

@@ -2,6 +2,8 @@
 // 5.1.2 and 5.2; twin of glint-bake-core lobes/query.rs, whose boxes are lobes like others. Here what boxes of one size have in
 // common is found once, since most of what a picture costs are boxes. Accessors: see glint_lobes.wgsl.
 
+#import lobes::eval
+
 // A footprint that boxes of one size are seen by. What is the same for all of them is here: a box costs little more than the
 // look-up of its patch.
 struct GlintLobesBoxFilter {

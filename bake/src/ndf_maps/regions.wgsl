@@ -1,6 +1,8 @@
 // A surface of examples placed at random: sub-regions, their owners, and all that they show under a footprint. Xing et al. 2024,
 // section 6.3, Fig. 3; twin of glint-bake-core ndf_maps/{surface,placement}.rs.
 
+#import ndf_maps::view
+
 // The grid as a footprint sees it: positions are relative to the corner of the base cell.
 struct GlintNdfCells {
     base: vec2i,

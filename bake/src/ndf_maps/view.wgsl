@@ -1,6 +1,10 @@
 // What a part of the surface shows of one placed example under a footprint: which tiles or boxes, and their sum. Xing et al.
 // 2024, section 6.3; twin of glint-bake-core ndf_maps/{surface,ellipse}.rs.
 
+#import ndf_maps::ellipse
+#import ndf_maps::tiles
+#import ndf_maps::lobes
+
 // How much of a piece of `edge` around x lies in the sub-region, as if it were a box along the surface's axes.
 fn glint_ndf_visible(view: GlintNdfView, x: vec2f, edge: f32) -> f32 {
     let size = edge * view.scale;

@@ -10,6 +10,9 @@
 //       density and share of boxes of `edge` texels under the footprint: both by glint_surface_seams.wgsl, which follows every
 //       seam, or glint_surface_blocks.wgsl, which follows none
 
+#import lobes::query
+#import synthesis::eval
+
 const GLINT_SURFACE_MOST_TEXELS: i32 = 1073741824; // 2^30
 
 // Choice between speed and accuracy.

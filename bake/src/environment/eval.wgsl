@@ -10,6 +10,8 @@
 //   fn glint_environment_colour_at(layer: u32, direction: vec3f, mip: f32) -> vec3f      section ENCO; called if coloured
 //   fn glint_environment_albedo_at(place: vec2f) -> vec4f                                section ENAL, clamped to its edge, place 0 to 1
 
+#import counting::eval
+
 // Shape of the cubes, from the section ENPP.
 struct GlintEnvironment {
     // Radiance of each level.

@@ -1,6 +1,9 @@
 // Corner tiles, a surface without end: one of the two arrangements, for glint_synthesis.wgsl. Twin of glint-bake-core
 // synthesis/eval_tiles.rs, where it is described.
 
+#import synthesis::eval
+#import hash
+
 // Uniform in 0 ... n - 1 (n <= 65536) from random bits.
 fn glint_synthesis_below(bits: u32, n: u32) -> u32 {
     return ((bits >> 16u) * n) >> 16u;

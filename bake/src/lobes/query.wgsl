@@ -2,6 +2,8 @@
 // mixture of two levels. Tan et al. 2022, section 5.2, Eq. 9; twin of glint-bake-core lobes/query.rs. Accessors: see
 // glint_lobes.wgsl.
 
+#import lobes::boxes
+
 // Sum of shares below which f32 cannot tell what a footprint sees; the last level is the best that is known then.
 const GLINT_LOBES_LEAST_SHARE: f32 = 1.0e-30;
 // Cells a footprint may visit, over pi and less h^2 (see glint_lobes_lod), at least.

@@ -8,6 +8,8 @@
 //       linearly filtered and clamped to the edges
 //   fn glint_dictionary_colour(index: u32) -> vec3f          glint colour, linear RGB; called only if material.colours > 0
 
+#import hash
+
 const GLINT_TARGET_BECKMANN: u32 = 0u;
 const GLINT_TARGET_GGX: u32 = 1u;
 // Coarsest level of the cell hierarchy.

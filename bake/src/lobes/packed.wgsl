@@ -1,6 +1,8 @@
 // Lobes of 16 bytes: one of the two ways that a pack stores them, for glint_lobes.wgsl. Twin of glint-bake-core
 // lobes/quantise.rs; the record is that of FORMAT.md, section LOBE.
 
+#import lobes::eval
+
 // The bytes of a word, the lowest first.
 fn glint_lobes_bytes(word: u32) -> vec4f {
     return vec4f((vec4u(word) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(0xffu));

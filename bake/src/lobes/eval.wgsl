@@ -13,6 +13,9 @@
 //                                                           map is wrapped: stored numbers, sign-extended to 16 bits, x in
 //                                                           the lower half
 
+#import footprint
+#import erf
+
 const GLINT_LOBES_PI: f32 = 3.14159265;
 // 1 / (2 pi).
 const GLINT_LOBES_PEAK: f32 = 0.15915494;

@@ -10,6 +10,8 @@
 //                                                           directions: by glint_synthesis_grid.wgsl or
 //                                                           glint_synthesis_tiles.wgsl, as patches are arranged
 
+#import synthesis::paths
+
 // First texel of a block of the sample, if there is one.
 struct GlintSynthesisBlock {
     found: bool,

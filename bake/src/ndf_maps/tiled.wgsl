@@ -1,5 +1,7 @@
 // A surface tiled with one example: places far from the origin keep their digits. Twin of glint-bake-core ndf_maps/surface.rs.
 
+#import ndf_maps::view
+
 // m x modulo `period` (a whole number), nearest to 0; exact up to the last sum however large x is, by products of halves.
 fn glint_ndf_product_within(m: f32, x: f32, period: f32) -> f32 {
     let mh = glint_upper_half(m);

@@ -1,6 +1,8 @@
 // A surface of examples placed at random under a wide footprint: the top tile under every transform, by shares of cells. Deviates
 // from Xing et al. 2024, section 6.3, where every example is visited; twin of glint-bake-core ndf_maps/surface.rs.
 
+#import ndf_maps::regions
+
 // Shares of four palette entries in one texel of the class texture.
 fn glint_ndf_class_shares(material: GlintNdfMaterial, mip_words: u32, size: u32, layer: u32, block: vec2i) -> vec4f {
     let at = vec2u(block) & vec2u(size - 1u);
