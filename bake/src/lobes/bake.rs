@@ -18,7 +18,9 @@ use crate::quality::sweep;
 use crate::rng::ItemRng;
 use glam::{DVec2, Vec2};
 use glint_formats::Wrap;
-use glint_formats::lobes::{FootprintError, LobeLevel, LobeStorage, LobesParams, MAX_LAST_CELLS, NormalsStorage};
+use glint_formats::lobes::{
+    BEYOND_RIM, FootprintError, LobeLevel, LobeStorage, LobesParams, LobesUniform, MAX_LAST_CELLS, NormalsStorage,
+};
 use rayon::prelude::*;
 
 /// Cells that are reduced from seeds, one a texel, in texels; half that for four seeds a texel. Finer than the stored levels:
@@ -45,14 +47,14 @@ pub struct BakedLobes {
     pub params: LobesParams,
     /// Records of all lobes.
     pub lobes: Vec<u8>,
-    /// Texels of the normals.
-    pub normals: Vec<u8>,
+    /// Normals, each with that of the texel below it, as [`glint_formats::lobes::NORMALS`] has them.
+    pub normals: Vec<[u32; 2]>,
 }
 
 impl BakedLobes {
-    /// Bytes that a renderer keeps.
+    /// Bytes that a renderer keeps: the uniform, lobes and normals.
     pub fn gpu_bytes(&self) -> usize {
-        self.lobes.len() + self.normals.len()
+        size_of::<LobesUniform>() + self.lobes.len() + size_of_val(&self.normals[..])
     }
 
     /// A lobe by its index among all; `scales` are those of its level.
@@ -72,14 +74,10 @@ impl BakedLobes {
             Wrap::Repeat => (i.rem_euclid(w), j.rem_euclid(h)),
             Wrap::Clamp => (i.clamp(0, w - 1), j.clamp(0, h - 1)),
         };
-        let at = (j * w + i) as usize * self.params.normals.texel_bytes();
-        let b = &self.normals[at..at + self.params.normals.texel_bytes()];
+        let [word, _] = self.normals[(j * w + i) as usize];
         match self.params.normals {
-            NormalsStorage::Snorm16 => {
-                let snorm = |k: usize| i16::from_le_bytes([b[k], b[k + 1]]) as f32 / 32767.0;
-                Vec2::new(snorm(0), snorm(2))
-            }
-            NormalsStorage::Unorm8 => Vec2::new(b[0] as f32, b[1] as f32) / 255.0 * 2.0 - 1.0,
+            NormalsStorage::Snorm16 => Vec2::new((word as i16) as f32, ((word >> 16) as i16) as f32) / 32767.0,
+            NormalsStorage::Unorm8 => Vec2::new((word & 0xffff) as f32, (word >> 16) as f32) / 255.0 * 2.0 - 1.0,
         }
     }
 }
@@ -89,15 +87,16 @@ pub fn bake(map: &NormalMap, options: &LobesOptions, progress: &dyn Progress) ->
     options.check(map)?;
     let mut baked = without_levels(map, options);
     build_levels(map, options, &mut baked, progress);
+    baked.params.rim_roughness = baked.rim_roughness(BEYOND_RIM);
     measure(map, options, &mut baked, progress);
     Ok(baked)
 }
 
 /// A map's normals and parameters; lobes are to follow.
 pub(crate) fn without_levels(map: &NormalMap, options: &LobesOptions) -> BakedLobes {
-    let (storage, normals) = store_normals(map, options);
+    let (normals, words) = store_normals(map, options);
     let [low, high] = normal_range(map);
-    BakedLobes {
+    let mut baked = BakedLobes {
         params: LobesParams {
             width: map.width,
             height: map.height,
@@ -105,7 +104,7 @@ pub(crate) fn without_levels(map: &NormalMap, options: &LobesOptions) -> BakedLo
             filter: options.filter,
             intrinsic_roughness: options.roughness as f32,
             storage: options.storage,
-            normals: storage,
+            normals,
             merge: options.merge,
             seeds: options.seeds,
             lobes_per_cell: options.lobes_per_cell,
@@ -113,12 +112,15 @@ pub(crate) fn without_levels(map: &NormalMap, options: &LobesOptions) -> BakedLo
             normal_low: low.to_array(),
             normal_extent: (high - low).to_array(),
             levels: Vec::new(),
+            rim_roughness: 0.0,
             measured_roughness: options.roughness as f32,
             measured: Vec::new(),
         },
         lobes: Vec::new(),
-        normals,
-    }
+        normals: Vec::new(),
+    };
+    baked.normals = normal_pairs(&baked.params, &words);
+    baked
 }
 
 /// Levels of cells of doubling edge, up to so few cells that all of them are read for the whole map: one cell's lobes would
@@ -252,7 +254,8 @@ fn normal_range(map: &NormalMap) -> [Vec2; 2] {
     [low, high]
 }
 
-fn store_normals(map: &NormalMap, options: &LobesOptions) -> (NormalsStorage, Vec<u8>) {
+/// How normals are stored, and the word of each texel.
+fn store_normals(map: &NormalMap, options: &LobesOptions) -> (NormalsStorage, Vec<u32>) {
     let unorm = |v: f32| ((v + 1.0) * 127.5).round().clamp(0.0, 255.0);
     let error: f64 = map.projected.iter().flatten().map(|v| ((unorm(*v) / 127.5 - 1.0 - v) as f64).powi(2)).sum();
     let rms = (error / (2 * map.projected.len()) as f64).sqrt();
@@ -261,13 +264,23 @@ fn store_normals(map: &NormalMap, options: &LobesOptions) -> (NormalsStorage, Ve
         NormalsChoice::Unorm8 => true,
         NormalsChoice::Snorm16 => false,
     };
-    let values = map.projected.iter().flatten();
+    let snorm = |v: f32| u32::from((v.clamp(-1.0, 1.0) * 32767.0).round() as i16 as u16);
+    let word = |[x, y]: [u32; 2]| x | y << 16;
     if small {
-        (NormalsStorage::Unorm8, values.map(|v| unorm(*v) as u8).collect())
+        let words = map.projected.iter().map(|s| word(s.map(|v| unorm(v) as u32)));
+        (NormalsStorage::Unorm8, words.collect())
     } else {
-        let snorm = |v: &f32| ((v.clamp(-1.0, 1.0) * 32767.0).round() as i16).to_le_bytes();
-        (NormalsStorage::Snorm16, values.flat_map(snorm).collect())
+        (NormalsStorage::Snorm16, map.projected.iter().map(|s| word(s.map(snorm))).collect())
     }
+}
+
+/// Each texel's word and that of the texel below it; zeros after the last where a buffer needs them.
+fn normal_pairs(params: &LobesParams, words: &[u32]) -> Vec<[u32; 2]> {
+    let row = |j: u32| &words[(j * params.width) as usize..][..params.width as usize];
+    let pairs = |j: u32| row(j).iter().zip(row(params.row_below(j))).map(|(texel, below)| [*texel, *below]);
+    let mut out: Vec<[u32; 2]> = (0..params.height).flat_map(pairs).collect();
+    out.resize(params.pair_count() as usize, [0; 2]);
+    out
 }
 
 /// Error over a few footprints a size, as the evaluator chooses levels.

@@ -29,8 +29,8 @@ pub struct Lobe {
 }
 
 /// What a cell's stored positions are relative to: the cell's edge, cut to the map.
-pub fn nominal_extent(params: &LobesParams, level: &LobeLevel) -> Vec2 {
-    Vec2::new(level.cell_texels.min(params.width) as f32, level.cell_texels.min(params.height) as f32)
+fn nominal_extent(params: &LobesParams, level: &LobeLevel) -> Vec2 {
+    Vec2::from(params.extent(level))
 }
 
 /// A level's ranges, with what every lobe would compute of them anew.

@@ -26,7 +26,7 @@ impl BakedLobes {
 
     /// The widest of a few intrinsic roughnesses at which at most `share` of the map lies beyond the rim; 0 if it is more at all of
     /// them.
-    pub fn rim_roughness(&self, share: f32) -> f32 {
+    pub(crate) fn rim_roughness(&self, share: f32) -> f32 {
         ROUGHNESSES.into_iter().find(|roughness| self.beyond_rim(*roughness) <= share).unwrap_or(0.0)
     }
 }
