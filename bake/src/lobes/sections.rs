@@ -1,6 +1,6 @@
 //! A map's lobes as sections of a pack, and back.
 
-use super::bake::BakedLobes;
+use super::baked::BakedLobes;
 use crate::error::{BakeError, Result};
 use crate::pack_access::{bytes, names_with, parameters, records};
 use glint_formats::lobes::{LOBES, LobesParams, NORMALS, PARAMS, UNIFORM};
