@@ -6,6 +6,7 @@ pub mod commands;
 pub mod exit;
 pub mod info;
 pub mod input;
+pub mod methods;
 pub mod output;
 pub mod pack;
 pub mod plan;

@@ -1,6 +1,7 @@
 //! The frame around every program: response files, parsing, interruption, and the exit code.
 
 mod common;
+pub mod normal_maps;
 mod response;
 mod run_flags;
 pub mod values;

@@ -5,7 +5,7 @@ use crate::exit::{Exit, Failure};
 use crate::info::{kib, percent};
 use crate::output;
 use crate::plan;
-use crate::project::Project;
+use crate::project::{Project, settled};
 use std::path::PathBuf;
 
 /// Lines that the help shows and a test runs.
@@ -52,7 +52,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
 
 /// Says how good the packs are; a failure when one is not good enough.
 fn measure(mut project: Project, terminal: Terminal) -> Result<(), Failure> {
-    plan::settle(&mut project, false, terminal)?;
+    settled::settle(&mut project, false, terminal)?;
     let all = plan::measure(&project)?;
     let mut text = String::new();
     for pack in &all {

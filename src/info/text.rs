@@ -1,7 +1,7 @@
 //! The report as text for people.
 
-use super::{MaterialInfo, Report};
-use crate::info::material::PlacementInfo;
+use super::Report;
+use crate::methods::ndf_maps::info::{MaterialInfo, PlacementInfo};
 use glint_formats::provenance::Provenance;
 use glint_formats::{Codec, Resource, SectionEntry, kinds, vk_format};
 use std::fmt::Write;

@@ -6,8 +6,9 @@ use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
 use crate::info::{Report, kib};
 use crate::input::synthetic;
+use crate::methods::ndf_maps::bake::{Baked, assemble, bake_material};
 use crate::output;
-use crate::pack::{self, Baked};
+use crate::pack;
 use crate::progress::Stages;
 use glint_bake_core::ndf_maps::bake::NdfMapsOptions;
 use glint_bake_core::ndf_maps::placement::{PlacementOptions, StochasticOptions};
@@ -109,7 +110,7 @@ fn bake(terminal: Terminal) -> Result<Vec<u8>, Failure> {
             seed: SEED,
             ..Default::default()
         });
-        let material = pack::bake(&map, &NdfMapsOptions::default(), &placement, &stages)
+        let material = bake_material(&map, &NdfMapsOptions::default(), &placement, &stages)
             .map_err(|e| Failure::bake(Path::new(example.name), &e))?;
         materials.push(Baked { name: example.name.to_owned(), material });
     }
@@ -118,7 +119,7 @@ fn bake(terminal: Terminal) -> Result<Vec<u8>, Failure> {
     provenance.seed = SEED;
     provenance.inputs = inputs;
     provenance.normal_convention = "y-up".into();
-    pack::assemble(&materials, Some(&layers), &provenance, Codec::None)
+    assemble(&materials, Some(&layers), &provenance, Codec::None)
 }
 
 /// The built-in maps take the same way as a file's content does.

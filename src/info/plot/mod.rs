@@ -1,15 +1,13 @@
 //! Pictures of what a pack holds: NDF tiles, normals, placement, tile errors, dictionaries, environments, area lights,
 //! lobes, seams of surfaces.
 
-mod cubes;
-mod histogram;
-mod lobes;
-mod maps;
-mod marginals;
-mod mip_rows;
-
 use crate::canvas::Canvas;
 use crate::exit::{Exit, Failure};
+use crate::methods::area_light::plot as mip_rows;
+use crate::methods::dictionary::plot as marginals;
+use crate::methods::environment::plot as cubes;
+use crate::methods::lobes::plot as lobes;
+use crate::methods::ndf_maps::{histogram, plot as maps};
 use crate::output;
 use glam::DVec2;
 use glint_bake_core::footprint::Footprint;
@@ -119,7 +117,7 @@ fn picture_of(pack: &Pack, kind: FourCc, name: &str, draw: impl Fn(&Texels) -> C
 }
 
 /// Text as it stands in an SVG.
-fn escape(text: &str) -> String {
+pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 

@@ -1,6 +1,6 @@
 //! One environment, as numbers.
 
-use super::text::{kib, percent};
+use crate::info::{kib, percent};
 use glint_formats::Pack;
 use glint_formats::environment::{ALBEDO, COLOURS, EnvironmentParams, INDICATORS, PARAMS, RADIANCE};
 use serde::Serialize;
@@ -57,7 +57,7 @@ impl EnvironmentInfo {
     }
 
     /// The part of the text report that is about this environment.
-    pub(super) fn to_text(&self) -> String {
+    pub fn to_text(&self) -> String {
         let params = &self.params;
         let measured = &params.measured;
         let mut out = String::new();

@@ -2,7 +2,12 @@
 //!
 //! A new method is one variant here; projects, their options and ninja edges follow from its flags.
 
-use super::{area_light, dictionary, environment, lobes, ndf_maps};
+pub mod area_light;
+pub mod dictionary;
+pub mod environment;
+pub mod lobes;
+pub mod ndf_maps;
+
 use crate::cli::Terminal;
 use crate::exit::Failure;
 use clap::Subcommand;
@@ -26,11 +31,11 @@ impl Method {
     /// Bakes the pack.
     pub fn run(self, terminal: Terminal) -> Result<(), Failure> {
         match self {
-            Method::NdfMaps(args) => ndf_maps::run(*args, terminal),
-            Method::Lobes(args) => lobes::run(*args, terminal),
-            Method::Dictionary(args) => dictionary::run(&args, terminal),
-            Method::Environment(args) => environment::run(&args, terminal),
-            Method::AreaLight(args) => area_light::run(*args, terminal),
+            Method::NdfMaps(args) => ndf_maps::bake::run(*args, terminal),
+            Method::Lobes(args) => lobes::bake::run(*args, terminal),
+            Method::Dictionary(args) => dictionary::bake::run(&args, terminal),
+            Method::Environment(args) => environment::bake::run(&args, terminal),
+            Method::AreaLight(args) => area_light::bake::run(*args, terminal),
         }
     }
 }
@@ -51,12 +56,12 @@ impl Method {
     /// Bakes without writing: the draft and the bytes of its pack.
     pub fn draft(self) -> Result<(Draft, u64), Failure> {
         match self {
-            Method::NdfMaps(args) => ndf_maps::draft(*args).map(|(made, bytes)| (Draft::NdfMaps(made), bytes)),
+            Method::NdfMaps(args) => ndf_maps::bake::draft(*args).map(|(made, bytes)| (Draft::NdfMaps(made), bytes)),
             Method::AreaLight(args) => {
-                area_light::draft(&args).map(|(made, bytes)| (Draft::AreaLight(Box::new(made)), bytes))
+                area_light::bake::draft(&args).map(|(made, bytes)| (Draft::AreaLight(Box::new(made)), bytes))
             }
             Method::Environment(args) => {
-                environment::draft(&args).map(|(made, bytes)| (Draft::Environment(Box::new(made)), bytes))
+                environment::bake::draft(&args).map(|(made, bytes)| (Draft::Environment(Box::new(made)), bytes))
             }
             Method::Lobes(_) | Method::Dictionary(_) => Ok((Draft::Unplanned, 0)),
         }

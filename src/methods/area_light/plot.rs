@@ -1,7 +1,7 @@
 //! Pictures of the mips of area-light maps: all mips beside each other, each as large as the first.
 
-use super::maps::heat;
 use crate::canvas::Canvas;
+use crate::methods::ndf_maps::plot::heat;
 use glint_formats::export::Texels;
 
 const BACKGROUND: [u8; 3] = [16, 16, 20];

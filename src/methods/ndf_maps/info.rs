@@ -1,13 +1,16 @@
 //! One material of the tiny-example method, as numbers.
 
-use super::text::{kib, percent};
-use crate::pack::{PAPER_TILE_BYTES, storage_name};
+use crate::info::{kib, percent};
 use glint_bake_core::ndf_maps::eval::Material;
 use glint_formats::ndf_maps::{
-    CLASSES, DENSITY, MeasuredError, NOISE, NORMALS, PALETTE, PARAMS, PLACEMENT, PlacementKind, TILES, Wrap,
+    CLASSES, DENSITY, DensityStorage, MeasuredError, NOISE, NORMALS, PALETTE, PARAMS, PLACEMENT, PlacementKind, TILES,
+    Wrap,
 };
 use glint_formats::{FourCc, Pack};
 use serde::Serialize;
+
+/// Bytes of one tile in the paper's layout: 128 × 128 floats.
+pub const PAPER_TILE_BYTES: u64 = 128 * 128 * 4;
 
 /// One material of the tiny-example method.
 #[derive(Debug, Serialize)]
@@ -162,4 +165,13 @@ fn levels(material: &Material) -> Vec<LevelInfo> {
         }
     };
     material.maps.params.levels.iter().map(describe).collect()
+}
+
+/// The flag's value for a storage.
+pub fn storage_name(storage: DensityStorage) -> &'static str {
+    match storage {
+        DensityStorage::SqrtU8 => "u8",
+        DensityStorage::F16 => "f16",
+        DensityStorage::PaperF32 => "paper",
+    }
 }

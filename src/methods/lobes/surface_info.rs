@@ -1,7 +1,7 @@
 //! One synthesised surface, as numbers.
 
-use super::lobes::LobesInfo;
-use super::text::{kib, percent};
+use super::info::LobesInfo;
+use crate::info::{kib, percent};
 use glint_bake_core::surface::sections;
 use glint_bake_core::synthesis::measure::whole_share;
 use glint_formats::Pack;
@@ -90,7 +90,7 @@ impl SurfaceInfo {
     }
 
     /// The part of the text report that is about this surface.
-    pub(super) fn to_text(&self) -> String {
+    pub fn to_text(&self) -> String {
         let mut out = String::new();
         // Writing to a string cannot fail.
         let _ = writeln!(out, "surface \"{}\"", self.name);

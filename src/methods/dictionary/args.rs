@@ -1,19 +1,8 @@
-//! `glint-bake dictionary`: a slope dictionary in a verified pack. It has no inputs; everything follows from the flags.
+//! Flags of `glint-bake dictionary`.
 
-use super::deliver::Delivery;
-use crate::cli::{RunFlags, Terminal};
-use crate::exit::Failure;
-use crate::info::DictionaryInfo;
-use crate::pack;
-use glint_bake_core::dictionary::{self, DictionaryOptions, quality, sections};
-use glint_formats::Codec;
-use glint_formats::provenance::Provenance;
+use crate::cli::RunFlags;
+use glint_bake_core::dictionary::DictionaryOptions;
 use std::path::PathBuf;
-
-/// Name of the dictionary in its pack.
-const NAME: &str = "dictionary";
-/// What makes a dictionary smaller.
-const SMALLER: &str = "give fewer --marginals, --levels or --entries";
 
 /// Lines that `--help` shows and a test runs.
 const EXAMPLES: &str = "\
@@ -55,34 +44,12 @@ pub struct Args {
     pub compress: bool,
 
     #[command(flatten)]
-    run: RunFlags,
-}
-
-/// Runs the subcommand, on one thread however many are offered: a dictionary takes hundredths of a second.
-pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
-    let options = args.options();
-    options.validate()?;
-    let delivery = Delivery { output: &args.output, inputs: &[], run: &args.run };
-    delivery.check()?;
-    delivery.check_size(2 * options.tables() * u64::from(options.entries), SMALLER)?;
-    if args.run.dry_run {
-        terminal.say(&format!(
-            "would write {}: {}; dry run, nothing was written",
-            args.output.display(),
-            DictionaryInfo::size_line(options.marginals, options.levels, options.entries)
-        ));
-        return Ok(());
-    }
-    let dictionary = dictionary::bake(&options)?;
-    let codec = if args.compress { Codec::Zstd } else { Codec::None };
-    let sections = sections::to_sections(NAME, &dictionary, quality::measure(&dictionary), codec);
-    drop(dictionary);
-    let bytes = pack::seal(&args.provenance(), sections)?;
-    delivery.write(bytes, SMALLER, terminal)
+    pub run: RunFlags,
 }
 
 impl Args {
-    fn options(&self) -> DictionaryOptions {
+    /// Options of the bake.
+    pub fn options(&self) -> DictionaryOptions {
         DictionaryOptions {
             marginals: self.marginals,
             levels: self.levels,
@@ -90,22 +57,6 @@ impl Args {
             alpha_dict: self.alpha_dict,
             lobe_std: self.lobe_std,
             seed: self.seed,
-        }
-    }
-
-    /// Where the pack comes from. Flags that do not change its contents are left out.
-    fn provenance(&self) -> Provenance {
-        let options = [
-            ("marginals", self.marginals.to_string()),
-            ("levels", self.levels.to_string()),
-            ("entries", self.entries.to_string()),
-            ("alpha-dict", self.alpha_dict.to_string()),
-            ("lobe-std", self.lobe_std.to_string()),
-        ];
-        Provenance {
-            options: options.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
-            seed: self.seed,
-            ..pack::provenance("dictionary")
         }
     }
 }

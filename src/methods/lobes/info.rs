@@ -1,6 +1,6 @@
 //! One map's MIP-mapped lobes, as numbers.
 
-use super::text::{kib, percent};
+use crate::info::{kib, percent};
 use glint_bake_core::lobes::{BakedLobes, sections};
 use glint_formats::Pack;
 use glint_formats::lobes::{Filter, FootprintError, LobeStorage, Merge, NormalsStorage};
@@ -58,7 +58,7 @@ impl LobesInfo {
     }
 
     /// Describes lobes of either kind.
-    pub(super) fn describe(name: &str, baked: &BakedLobes) -> Option<LobesInfo> {
+    pub fn describe(name: &str, baked: &BakedLobes) -> Option<LobesInfo> {
         let params = &baked.params;
         Some(LobesInfo {
             name: name.to_owned(),
@@ -120,7 +120,7 @@ impl LobesInfo {
     }
 
     /// The part of the text report that is about this map.
-    pub(super) fn to_text(&self) -> String {
+    pub fn to_text(&self) -> String {
         let mut out = String::new();
         // Writing to a string cannot fail.
         let _ = writeln!(out, "lobes of \"{}\"", self.name);

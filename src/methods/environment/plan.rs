@@ -1,9 +1,9 @@
 //! Drafts of environments: the smallest faces and the fewest levels that keep an error over the scene's roughnesses.
 
-use super::choose::USED;
-use super::{Drafts, Found, Point, options};
-use crate::commands::Draft;
 use crate::exit::{Exit, Failure};
+use crate::methods::Draft;
+use crate::plan::USED;
+use crate::plan::{Drafts, Found, Point, options};
 use crate::project::scene::Lobes;
 use glam::DVec3;
 use glint_bake_core::environment::eval::environment_radiance;
@@ -30,7 +30,7 @@ struct Lookup {
 }
 
 /// Name of the error.
-pub(super) const MEASURE: &str = "RMSE of radiance";
+pub const MEASURE: &str = "RMSE of radiance";
 
 /// What was measured of one environment. Larger faces are not tried once an error is met.
 pub fn candidates(drafts: &mut Drafts<'_>, lobes: &Lobes, budget: f64) -> Result<Found, Failure> {
@@ -105,6 +105,6 @@ fn error(environment: &Environment, lookups: &[Lookup]) -> f64 {
 }
 
 /// The error of a baked environment, at other directions than those that the plan was made at.
-pub(super) fn measured(image: &EnvironmentImage, environment: &Environment, alpha: (f64, f64), seed: u64) -> f64 {
+pub fn measured(image: &EnvironmentImage, environment: &Environment, alpha: (f64, f64), seed: u64) -> f64 {
     error(environment, &exact(image, environment, alpha, seed))
 }

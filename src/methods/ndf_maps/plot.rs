@@ -53,7 +53,7 @@ fn disk_point(x: u32, y: u32, cell: u32, inside: Vec2) -> Vec2 {
 }
 
 /// Black over red and yellow to white.
-pub(super) fn heat(value: f32) -> [u8; 3] {
+pub fn heat(value: f32) -> [u8; 3] {
     [3.0, 1.6, 0.6].map(|gain| {
         let start = if gain > 2.0 {
             0.0
@@ -117,7 +117,7 @@ pub fn owners(placement: &BakedPlacement) -> Option<Canvas> {
     Some(canvas)
 }
 
-pub(super) fn colour_wheel(hue: f32) -> [u8; 3] {
+pub fn colour_wheel(hue: f32) -> [u8; 3] {
     [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|shift| {
         let wave = (std::f32::consts::TAU * (hue + shift)).cos();
         (120.0 + 85.0 * wave) as u8

@@ -1,8 +1,8 @@
 //! Drafts of maps for rectangle lights: which mips the scene's footprints read, and bytes against the error of highlights.
 
-use super::{Drafts, Found, Point, options, sizes};
-use crate::commands::Draft;
 use crate::exit::{Exit, Failure};
+use crate::methods::Draft;
+use crate::plan::{Drafts, Found, Point, options, sizes};
 use crate::project::scene::{Scene, View};
 use glint_bake_core::area_light::AreaLightMaterial;
 use glint_bake_core::area_light::eval::LOBES;
@@ -29,7 +29,7 @@ const ISOTROPIC: usize = 3;
 const ANISOTROPIC: usize = 5;
 
 /// Name of the error.
-pub(super) const MEASURE: &str = "RMSE of highlights";
+pub const MEASURE: &str = "RMSE of highlights";
 
 /// What was measured of one pack.
 pub fn candidates(drafts: &mut Drafts<'_>, scene: &Scene, view: &View) -> Result<Found, Failure> {
@@ -101,13 +101,7 @@ fn worst(
 }
 
 /// The error of a baked pack at the scene's footprints, at other places than those that the plan was made at.
-pub(super) fn measured(
-    map: &NormalMap,
-    material: &AreaLightMaterial,
-    sigma: (f64, f64),
-    places: u32,
-    seed: u64,
-) -> f64 {
+pub fn measured(map: &NormalMap, material: &AreaLightMaterial, sigma: (f64, f64), places: u32, seed: u64) -> f64 {
     let most = f64::from(map.width.max(map.height));
     let lights = table(f64::from(material.params.base_roughness));
     worst(map, material, &lights, &sizes((sigma.0.min(most), sigma.1.min(most)), SIZES), places, seed)

@@ -1,19 +1,74 @@
-//! What a bake will do, checked before any of it is done: names, options, inputs, output paths.
+//! `glint-bake ndf-maps`: normal maps in, a verified pack out. What a bake will do is checked before any of it is done:
+//! names, options, inputs, output paths.
 
 use super::args::{Args, PlacementArg};
-use crate::commands::deliver::Delivery;
-use crate::commands::normal_maps::{check_name, digest, unique_name};
+use super::info::{PAPER_TILE_BYTES, storage_name};
+use crate::cli::Terminal;
+use crate::cli::normal_maps::{check_name, digest, unique_name};
+use crate::commands::bake::Delivery;
 use crate::exit::{Exit, Failure};
+use crate::info::percent;
 use crate::input::{LoadedMap, load_normal_map};
-use crate::pack;
-use glint_bake_core::ndf_maps::bake::{FINEST_TILE, NdfMapsOptions, ROUGHNESS_RANGE, WORST_OF_MEAN};
+use crate::pack::{self, seal};
+use crate::progress::Stages;
+use glint_bake_core::error::{BakeError, Result as BakeResult};
+use glint_bake_core::ndf_maps::bake::{self, FINEST_TILE, NdfMapsOptions, ROUGHNESS_RANGE, WORST_OF_MEAN};
 use glint_bake_core::ndf_maps::eval::Material;
-use glint_bake_core::ndf_maps::placement::{PlacementOptions, StochasticOptions};
-use glint_formats::Codec;
+use glint_bake_core::ndf_maps::placement::{self, PlacementOptions, StochasticOptions};
+use glint_bake_core::ndf_maps::sections;
+use glint_bake_core::ndf_maps::transform::TransformRanges;
+use glint_bake_core::normal_map::NormalMap;
+use glint_bake_core::progress::{Progress, Silent};
 use glint_formats::container::MAX_NAME_BYTES;
-use glint_formats::ndf_maps::LayeredMaterial;
+use glint_formats::ndf_maps::{DensityStorage, LAYERS, LayeredMaterial};
 use glint_formats::provenance::{InputDigest, Provenance};
+use glint_formats::{Codec, Section};
 use std::path::PathBuf;
+
+/// Runs the subcommand.
+pub fn run(args: Args, terminal: Terminal) -> Result<(), Failure> {
+    let threads = args.run.threads;
+    crate::commands::on_threads(threads, || bake_pack(args, terminal))?
+}
+
+/// A bake that is only looked at: maps and materials, and the bytes that the pack would have.
+pub fn draft(args: Args) -> Result<(Vec<(NormalMap, Material)>, u64), Failure> {
+    let job = Job::unwritten(args)?;
+    let mut materials = Vec::new();
+    for source in &job.sources {
+        let material = bake_material(&source.loaded.map, &job.bake, &job.placement, &Silent)
+            .map_err(|e| Failure::bake(&source.path, &e))?;
+        job.check_error(source, &material)?;
+        materials.push(Baked { name: source.name.clone(), material });
+    }
+    let bytes = assemble(&materials, job.layers.as_ref(), &job.provenance(), job.codec())?;
+    let made = job.sources.into_iter().zip(materials).map(|(source, baked)| (source.loaded.map, baked.material));
+    Ok((made.collect(), bytes.len() as u64))
+}
+
+fn bake_pack(args: Args, terminal: Terminal) -> Result<(), Failure> {
+    let job = Job::new(args)?;
+    for source in &job.sources {
+        for warning in &source.loaded.warnings {
+            terminal.warn(&format!("{}: {warning}", source.path.display()));
+        }
+        terminal.detail(&input_line(source));
+    }
+    if job.args.run.dry_run {
+        terminal.say(&dry_run_text(&job));
+        return Ok(());
+    }
+    let stages = Stages::new(terminal);
+    let mut materials = Vec::new();
+    for source in &job.sources {
+        let material = bake_material(&source.loaded.map, &job.bake, &job.placement, &stages)
+            .map_err(|e| Failure::bake(&source.path, &e))?;
+        job.check_error(source, &material)?;
+        materials.push(Baked { name: source.name.clone(), material });
+    }
+    let bytes = assemble(&materials, job.layers.as_ref(), &job.provenance(), job.codec())?;
+    job.delivery().write(bytes, "--max-error", terminal)
+}
 
 /// One map that becomes one material.
 pub struct Source {
@@ -28,7 +83,7 @@ pub struct Source {
 }
 
 /// A bake that can go ahead.
-pub struct Plan {
+pub struct Job {
     /// The flags it was asked for with.
     pub args: Args,
     /// The maps, in the order given.
@@ -41,18 +96,18 @@ pub struct Plan {
     pub layers: Option<LayeredMaterial>,
 }
 
-impl Plan {
+impl Job {
     /// Checks arguments, then paths, then the content of the inputs.
-    pub fn new(args: Args) -> Result<Plan, Failure> {
-        Plan::checked(args, true)
+    pub fn new(args: Args) -> Result<Job, Failure> {
+        Job::checked(args, true)
     }
 
     /// The same for a bake that is only looked at.
-    pub fn unwritten(args: Args) -> Result<Plan, Failure> {
-        Plan::checked(args, false)
+    pub fn unwritten(args: Args) -> Result<Job, Failure> {
+        Job::checked(args, false)
     }
 
-    fn checked(args: Args, writes: bool) -> Result<Plan, Failure> {
+    fn checked(args: Args, writes: bool) -> Result<Job, Failure> {
         let bake = bake_options(&args)?;
         let placement = placement_options(&args)?;
         let names = names(&args)?;
@@ -65,10 +120,10 @@ impl Plan {
         for (path, name) in args.maps.iter().zip(names) {
             let loaded = load_normal_map(path, &input)?;
             let digest = digest(path, &loaded)?;
-            pack::check(&loaded.map, &bake, &placement, args.run.max_memory).map_err(|e| Failure::bake(path, &e))?;
+            check_material(&loaded.map, &bake, &placement, args.run.max_memory).map_err(|e| Failure::bake(path, &e))?;
             sources.push(Source { path: path.clone(), name, loaded, digest });
         }
-        Ok(Plan { args, sources, bake, placement, layers })
+        Ok(Job { args, sources, bake, placement, layers })
     }
 
     /// How sections are stored.
@@ -107,11 +162,11 @@ impl Plan {
         let mut options = vec![
             ("roughness", args.roughness.to_string()),
             ("max-error", self.bake.max_error.to_string()),
-            ("storage", pack::storage_name(self.bake.storage).to_owned()),
+            ("storage", storage_name(self.bake.storage).to_owned()),
         ];
         options.extend(args.input.provenance());
         options.push(("placement", format!("{:?}", args.placement).to_ascii_lowercase()));
-        options.push(("transforms", pack::transforms_text(pack::ranges(&self.placement))));
+        options.push(("transforms", transforms_text(ranges(&self.placement))));
         if args.placement == PlacementArg::Stochastic {
             options.push(("palette", args.palette.to_string()));
             options.push(("cells", args.cells.to_string()));
@@ -221,4 +276,138 @@ fn layers(text: &str, names: &[String], args: &Args) -> Result<LayeredMaterial, 
     Err(Failure::usage(format!(
         "--layers: expected COAT:BASE with two materials of this pack ({known}), found {text:?}"
     )))
+}
+
+/// One input, for `--verbose`.
+fn input_line(source: &Source) -> String {
+    let report = &source.loaded.report;
+    let [su, sv] = report.slope_std;
+    format!(
+        "{}: {} × {} texels, {}, {} bytes, slope standard deviation {su:.3} {sv:.3}, material \"{}\"",
+        source.path.display(),
+        source.loaded.map.width,
+        source.loaded.map.height,
+        source.loaded.convention,
+        source.loaded.bytes,
+        source.name
+    )
+}
+
+/// What a dry run would do.
+fn dry_run_text(job: &Job) -> String {
+    let mut lines = Vec::new();
+    for source in &job.sources {
+        let (width, height) = (source.loaded.map.width, source.loaded.map.height);
+        lines.push(format!(
+            "would bake {} as \"{}\": {width} × {height} texels, {} tiles",
+            source.path.display(),
+            source.name,
+            tile_count(width, height, job.bake.min_tile)
+        ));
+    }
+    let output = job.args.output.display();
+    lines.push(format!(
+        "would write {output}: σ_r {}, E₁ {} asked, {} storage; dry run, nothing was written",
+        job.bake.roughness,
+        percent(job.bake.max_error),
+        storage_name(job.bake.storage)
+    ));
+    lines.join("\n")
+}
+
+/// A material with its name.
+pub struct Baked {
+    /// Name in the pack.
+    pub name: String,
+    /// What was baked.
+    pub material: Material,
+}
+
+/// Bakes one material.
+pub fn bake_material(
+    map: &NormalMap,
+    options: &NdfMapsOptions,
+    placement: &PlacementOptions,
+    progress: &dyn Progress,
+) -> BakeResult<Material> {
+    let placement = placement::bake(map, options.roughness, placement)?;
+    let maps = bake::bake(map, options, progress)?;
+    Ok(Material { maps, placement })
+}
+
+/// What would stop [`bake_material`], found without the work.
+fn check_material(
+    map: &NormalMap,
+    options: &NdfMapsOptions,
+    placement: &PlacementOptions,
+    max_memory: u64,
+) -> BakeResult<()> {
+    if u64::from(map.width) * u64::from(map.height) > bake::MAX_EXAMPLE_TEXELS {
+        return Err(BakeError::LimitExceeded(format!(
+            "expected at most {} texels, found {} × {}; NDF maps are for small examples: use a part of it with --crop WxH+X+Y",
+            bake::MAX_EXAMPLE_TEXELS,
+            map.width,
+            map.height
+        )));
+    }
+    let needed = tile_count(map.width, map.height, options.min_tile) * PAPER_TILE_BYTES;
+    if options.storage == DensityStorage::PaperF32 && needed > max_memory {
+        return Err(BakeError::LimitExceeded(format!(
+            "the paper's layout needs {needed} bytes, the limit is {max_memory}; raise --max-memory or give --storage u8"
+        )));
+    }
+    placement::bake(map, options.roughness, placement).map(|_| ())
+}
+
+/// Tiles of all levels of an example, from tiles of `min_tile` texels on.
+fn tile_count(width: u32, height: u32, min_tile: u32) -> u64 {
+    bake::levels_from(width, height, min_tile)
+        .iter()
+        .map(|level| u64::from(level.tiles_x) * u64::from(level.tiles_y))
+        .sum()
+}
+
+/// The bytes of a pack of materials.
+pub fn assemble(
+    materials: &[Baked],
+    layers: Option<&LayeredMaterial>,
+    provenance: &Provenance,
+    codec: Codec,
+) -> Result<Vec<u8>, Failure> {
+    let mut all = Vec::new();
+    for baked in materials {
+        all.extend(sections::to_sections(&baked.name, &baked.material, codec));
+    }
+    if let Some(layers) = layers {
+        all.push(Section::parameters(LAYERS, &format!("{}:{}", layers.coat, layers.base), layers));
+    }
+    seal(provenance, all)
+}
+
+/// The ranges of a placement.
+fn ranges(placement: &PlacementOptions) -> &TransformRanges {
+    match placement {
+        PlacementOptions::Tiled(ranges) => ranges,
+        PlacementOptions::Stochastic(options) => &options.ranges,
+    }
+}
+
+/// Ranges as the flag takes them.
+fn transforms_text(ranges: &TransformRanges) -> String {
+    let mut parts = Vec::new();
+    let mut add = |name: &str, (low, high): (f64, f64), neutral: f64| {
+        if low != high {
+            parts.push(format!("{name}={low}..{high}"));
+        } else if low != neutral {
+            parts.push(format!("{name}={low}"));
+        }
+    };
+    add("rotate", ranges.rotate_degrees, 0.0);
+    add("scale", ranges.scale, 1.0);
+    add("stretch", ranges.stretch, 1.0);
+    add("shear", ranges.shear, 0.0);
+    if ranges.mirror {
+        parts.push("mirror".into());
+    }
+    if parts.is_empty() { "none".into() } else { parts.join(",") }
 }

@@ -1,6 +1,6 @@
 //! One slope dictionary, as numbers.
 
-use super::text::kib;
+use crate::info::kib;
 use glint_formats::Pack;
 use glint_formats::dictionary::{DictionaryParams, MeasuredError, PARAMS, TABLE};
 use serde::Serialize;
@@ -71,7 +71,7 @@ impl DictionaryInfo {
     }
 
     /// The part of the text report that is about this dictionary.
-    pub(super) fn to_text(&self) -> String {
+    pub fn to_text(&self) -> String {
         let mut out = String::new();
         // Writing to a string cannot fail.
         let _ = writeln!(out, "dictionary \"{}\"", self.name);

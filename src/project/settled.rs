@@ -1,8 +1,8 @@
 //! The plan of a project between builds: drafts take longer than bakes, so a plan is made once for equal maps and scenes.
 
-use super::plan;
 use crate::cli::{Terminal, git_hash};
 use crate::exit::{Exit, Failure};
+use crate::plan::plan;
 use crate::project::arguments::Methods;
 use crate::project::stamp::Stamp;
 use crate::project::{Project, Target};

@@ -1,8 +1,8 @@
 //! Drafts of NDF maps: which tiles the scene's footprints read, and bytes against E₁ at those footprints.
 
-use super::{Drafts, Found, Point, options, sizes};
-use crate::commands::Draft;
 use crate::exit::{Exit, Failure};
+use crate::methods::Draft;
+use crate::plan::{Drafts, Found, Point, options, sizes};
 use crate::project::scene::{Footprints, Scene, View};
 use glam::DVec2;
 use glint_bake_core::footprint::Footprint;
@@ -33,7 +33,7 @@ struct Size {
 }
 
 /// Name of the error.
-pub(super) const MEASURE: &str = "E₁";
+pub const MEASURE: &str = "E₁";
 
 /// What was measured of one pack.
 pub fn candidates(drafts: &mut Drafts<'_>, scene: &Scene, view: &View) -> Result<Found, Failure> {
@@ -153,6 +153,6 @@ fn worst(material: &Material, sizes: &[Size]) -> f64 {
 }
 
 /// The error of a baked pack at the scene's footprints, at other places than those that the plan was made at.
-pub(super) fn measured(map: &NormalMap, material: &Material, seen: &Footprints, places: u32, seed: u64) -> f64 {
+pub fn measured(map: &NormalMap, material: &Material, seen: &Footprints, places: u32, seed: u64) -> f64 {
     worst(material, &exact(map, material, seen, places, seed))
 }

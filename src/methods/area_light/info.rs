@@ -1,6 +1,6 @@
 //! One area-light material, as numbers.
 
-use super::text::kib;
+use crate::info::kib;
 use glam::Vec2;
 use glint_bake_core::area_light::fetch::{Maps, fetch};
 use glint_bake_core::area_light::sections;
@@ -107,7 +107,7 @@ impl AreaLightInfo {
     }
 
     /// The part of the text report that is about this material.
-    pub(super) fn to_text(&self) -> String {
+    pub fn to_text(&self) -> String {
         let mut out = String::new();
         let kind = if self.anisotropic { "anisotropic" } else { "isotropic" };
         // Writing to a string cannot fail.

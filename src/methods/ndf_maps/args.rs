@@ -1,7 +1,7 @@
 //! Flags of `glint-bake ndf-maps`.
 
+use crate::cli::normal_maps::InputFlags;
 use crate::cli::{RunFlags, values};
-use crate::commands::normal_maps::InputFlags;
 use clap::ValueEnum;
 use glint_bake_core::ndf_maps::transform::TransformRanges;
 use glint_formats::ndf_maps::DensityStorage;
