@@ -13,3 +13,4 @@ pub mod plan;
 pub mod preview;
 pub mod progress;
 pub mod project;
+pub mod quantities;

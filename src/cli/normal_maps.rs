@@ -1,13 +1,12 @@
 //! What subcommands that bake normal maps share: flags of how maps are read, names of materials, digests of inputs.
 
 use crate::cli::values;
-use crate::exit::{Exit, Failure};
-use crate::input::{Channels, Crop, InputOptions, LoadedMap};
+use crate::exit::Failure;
+use crate::input::{Channels, Crop, InputOptions};
 use clap::ValueEnum;
 use glint_bake_core::normal_map::GreenAxis;
 use glint_formats::container::MAX_NAME_BYTES;
 use glint_formats::ndf_maps::Wrap;
-use glint_formats::provenance::InputDigest;
 use std::path::Path;
 
 /// How normal maps are read.
@@ -157,14 +156,4 @@ fn cut(stem: &str, suffix: &str) -> String {
         end -= 1;
     }
     format!("{}{suffix}", &stem[..end])
-}
-
-/// Digest of the bytes that were loaded.
-pub fn digest(path: &Path, loaded: &LoadedMap) -> Result<InputDigest, Failure> {
-    let bytes = std::fs::read(path).map_err(|e| Failure::io(path, "cannot be read", &e))?;
-    if format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&bytes)) != loaded.digest {
-        let message = format!("{}: changed while it was read; run again once it is at rest", path.display());
-        return Err(Failure::new(Exit::InputOutput, message));
-    }
-    Ok(InputDigest::of(&loaded.file_name, &bytes))
 }

@@ -2,8 +2,9 @@
 
 use crate::cli::{RunFlags, Terminal};
 use crate::exit::{Exit, Failure};
-use crate::info::{Report, kib};
+use crate::info::Report;
 use crate::output;
+use crate::quantities::kib;
 use glint_formats::WriteOutcome;
 use std::path::{Path, PathBuf};
 

@@ -6,7 +6,6 @@ pub mod plot;
 mod text;
 
 pub use parameters::ParametersInfo;
-pub use text::{kib, percent};
 
 use crate::exit::{Exit, Failure};
 use crate::methods::area_light::info::AreaLightInfo;

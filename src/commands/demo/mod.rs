@@ -4,12 +4,13 @@ mod look;
 
 use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
-use crate::info::{Report, kib};
+use crate::info::Report;
 use crate::input::synthetic;
 use crate::methods::ndf_maps::bake::{Baked, assemble, bake_material};
 use crate::output;
 use crate::pack;
 use crate::progress::Stages;
+use crate::quantities::kib;
 use glint_bake_core::ndf_maps::bake::NdfMapsOptions;
 use glint_bake_core::ndf_maps::placement::{PlacementOptions, StochasticOptions};
 use glint_bake_core::ndf_maps::transform::TransformRanges;
@@ -73,7 +74,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let (pack_path, picture_path) = (folder.join("demo.glintpack"), folder.join("demo.png"));
     output::check_writable(&pack_path)?;
     output::check_writable(&picture_path)?;
-    super::on_threads(args.threads, || {
+    crate::cli::on_threads(args.threads, || {
         let start = Instant::now();
         output::write(&pack_path, &bake(terminal)?)?;
         let baked = start.elapsed();

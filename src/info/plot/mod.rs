@@ -116,11 +116,6 @@ fn picture_of(pack: &Pack, kind: FourCc, name: &str, draw: impl Fn(&Texels) -> C
     Texels::new(texture, &bytes).map(|texels| draw(&texels))
 }
 
-/// Text as it stands in an SVG.
-pub fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
-}
-
 /// A file name for a material, whose own name may hold anything.
 fn file_stem(index: usize, name: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '_' };

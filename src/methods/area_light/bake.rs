@@ -2,13 +2,12 @@
 
 use super::args::Args;
 use crate::cli::Terminal;
-use crate::cli::normal_maps::digest;
 use crate::commands::bake::Delivery;
 use crate::exit::Failure;
-use crate::info::kib;
-use crate::input::{LoadedMap, load_normal_map};
+use crate::input::{LoadedMap, digest, load_normal_map};
 use crate::pack;
 use crate::progress::Stages;
+use crate::quantities::kib;
 use glint_bake_core::area_light::{self, AreaLightMaterial, mips, sections};
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
@@ -22,7 +21,7 @@ const SMALLER: &str = "give --format snorm8, or a part of the map with --crop";
 /// Runs the subcommand.
 pub fn run(args: Args, terminal: Terminal) -> Result<(), Failure> {
     let threads = args.run.threads;
-    crate::commands::on_threads(threads, || bake(&args, terminal))?
+    crate::cli::on_threads(threads, || bake(&args, terminal))?
 }
 
 /// A bake that is only looked at: map and material, and the bytes that the pack would have.

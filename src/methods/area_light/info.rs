@@ -1,6 +1,6 @@
 //! One area-light material, as numbers.
 
-use crate::info::kib;
+use crate::quantities::kib;
 use glam::Vec2;
 use glint_bake_core::area_light::fetch::{Maps, fetch};
 use glint_bake_core::area_light::sections;

@@ -60,7 +60,7 @@ pub fn candidates(drafts: &mut Drafts<'_>, scene: &Scene, view: &View) -> Result
         }
         let (made, bytes) = highlights(drafts.make(&chosen)?)?;
         if found.points.is_empty() && skip > 0 && bytes < all_bytes {
-            let saved = crate::info::kib(all_bytes - bytes);
+            let saved = crate::quantities::kib(all_bytes - bytes);
             found.dropped.push(format!("the {skip} finest mips: no footprint reads them ({saved} in this format)"));
         }
         let error = worst(&made.0, &made.1, &lights, &sigmas, PLACES, SEED);

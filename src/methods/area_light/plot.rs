@@ -1,7 +1,6 @@
 //! Pictures of the mips of area-light maps: all mips beside each other, each as large as the first.
 
-use crate::canvas::Canvas;
-use crate::methods::ndf_maps::plot::heat;
+use crate::canvas::{Canvas, heat};
 use glint_formats::export::Texels;
 
 const BACKGROUND: [u8; 3] = [16, 16, 20];

@@ -1,6 +1,6 @@
 //! One slope dictionary, as numbers.
 
-use crate::info::kib;
+use crate::quantities::kib;
 use glint_formats::Pack;
 use glint_formats::dictionary::{DictionaryParams, MeasuredError, PARAMS, TABLE};
 use serde::Serialize;

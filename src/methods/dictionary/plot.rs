@@ -1,6 +1,6 @@
 //! The marginals of a dictionary as an SVG: one panel a level, some marginals, the mean of all, and the target.
 
-use crate::info::plot::escape;
+use crate::canvas::escape;
 use glint_bake_core::dictionary::quality::{mean_table, target_density};
 use glint_bake_core::dictionary::tables::Dictionary;
 use std::fmt::Write;

@@ -4,10 +4,10 @@ use super::args::{Args, KernelArg, LevelChoiceArg};
 use crate::cli::Terminal;
 use crate::commands::bake::Delivery;
 use crate::exit::Failure;
-use crate::info::kib;
 use crate::input::environment::{LoadedEnvironment, load_environment};
 use crate::pack;
 use crate::progress::Stages;
+use crate::quantities::kib;
 use glint_bake_core::environment::{Environment, EnvironmentImage, bake, quality, sections};
 use glint_bake_core::error::BakeError;
 use glint_bake_core::progress::Silent;
@@ -21,7 +21,7 @@ const SMALLER: &str = "give a smaller --face-size or fewer --levels";
 
 /// Runs the subcommand.
 pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
-    crate::commands::on_threads(args.run.threads, || bake_pack(args, terminal))?
+    crate::cli::on_threads(args.run.threads, || bake_pack(args, terminal))?
 }
 
 fn bake_pack(args: &Args, terminal: Terminal) -> Result<(), Failure> {

@@ -1,6 +1,6 @@
 //! One environment, as numbers.
 
-use crate::info::{kib, percent};
+use crate::quantities::{kib, percent};
 use glint_formats::Pack;
 use glint_formats::environment::{ALBEDO, COLOURS, EnvironmentParams, INDICATORS, PARAMS, RADIANCE};
 use serde::Serialize;

@@ -2,13 +2,13 @@
 
 use super::args::Args;
 use crate::cli::Terminal;
-use crate::cli::normal_maps::{check_name, digest, unique_name};
+use crate::cli::normal_maps::{check_name, unique_name};
 use crate::commands::bake::Delivery;
 use crate::exit::{Exit, Failure};
-use crate::info::kib;
-use crate::input::{LoadedMap, load_normal_map};
+use crate::input::{LoadedMap, digest, load_normal_map};
 use crate::pack;
 use crate::progress::Stages;
+use crate::quantities::kib;
 use clap::ValueEnum;
 use glint_bake_core::lobes::options::LobesOptions;
 use glint_bake_core::lobes::{self, sections};
@@ -29,7 +29,7 @@ const SURFACE_CELL: u32 = 8;
 /// Runs the subcommand.
 pub fn run(args: Args, terminal: Terminal) -> Result<(), Failure> {
     let threads = args.run.threads;
-    crate::commands::on_threads(threads, || bake(&args, terminal))?
+    crate::cli::on_threads(threads, || bake(&args, terminal))?
 }
 
 fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {

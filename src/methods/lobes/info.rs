@@ -1,6 +1,6 @@
 //! One map's MIP-mapped lobes, as numbers.
 
-use crate::info::{kib, percent};
+use crate::quantities::{kib, percent};
 use glint_bake_core::lobes::{BakedLobes, sections};
 use glint_formats::Pack;
 use glint_formats::lobes::{Filter, FootprintError, LobeStorage, Merge, NormalsStorage};

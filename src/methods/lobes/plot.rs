@@ -1,7 +1,6 @@
 //! Pictures of lobes: the NDF of a whole map or surface, and which patch shows each texel of a surface.
 
-use crate::canvas::Canvas;
-use crate::methods::ndf_maps::plot::{colour_wheel, heat};
+use crate::canvas::{Canvas, colour_wheel, heat};
 use glam::Vec2;
 use glint_bake_core::synthesis::Synthesis;
 

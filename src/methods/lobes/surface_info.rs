@@ -1,7 +1,7 @@
 //! One synthesised surface, as numbers.
 
 use super::info::LobesInfo;
-use crate::info::{kib, percent};
+use crate::quantities::{kib, percent};
 use glint_bake_core::surface::sections;
 use glint_bake_core::synthesis::measure::whole_share;
 use glint_formats::Pack;

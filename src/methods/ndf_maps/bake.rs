@@ -4,13 +4,13 @@
 use super::args::{Args, PlacementArg};
 use super::info::{PAPER_TILE_BYTES, storage_name};
 use crate::cli::Terminal;
-use crate::cli::normal_maps::{check_name, digest, unique_name};
+use crate::cli::normal_maps::{check_name, unique_name};
 use crate::commands::bake::Delivery;
 use crate::exit::{Exit, Failure};
-use crate::info::percent;
-use crate::input::{LoadedMap, load_normal_map};
+use crate::input::{LoadedMap, digest, load_normal_map};
 use crate::pack::{self, seal};
 use crate::progress::Stages;
+use crate::quantities::percent;
 use glint_bake_core::error::{BakeError, Result as BakeResult};
 use glint_bake_core::ndf_maps::bake::{self, FINEST_TILE, NdfMapsOptions, ROUGHNESS_RANGE, WORST_OF_MEAN};
 use glint_bake_core::ndf_maps::eval::Material;
@@ -28,7 +28,7 @@ use std::path::PathBuf;
 /// Runs the subcommand.
 pub fn run(args: Args, terminal: Terminal) -> Result<(), Failure> {
     let threads = args.run.threads;
-    crate::commands::on_threads(threads, || bake_pack(args, terminal))?
+    crate::cli::on_threads(threads, || bake_pack(args, terminal))?
 }
 
 /// A bake that is only looked at: maps and materials, and the bytes that the pack would have.

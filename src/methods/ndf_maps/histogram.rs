@@ -1,6 +1,6 @@
 //! How many tiles have which error, as an SVG.
 
-use crate::info::plot::escape;
+use crate::canvas::escape;
 use glint_bake_core::ndf_maps::bake::BakedNdfMaps;
 use std::fmt::Write;
 

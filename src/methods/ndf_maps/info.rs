@@ -1,6 +1,6 @@
 //! One material of the tiny-example method, as numbers.
 
-use crate::info::{kib, percent};
+use crate::quantities::{kib, percent};
 use glint_bake_core::ndf_maps::eval::Material;
 use glint_formats::ndf_maps::{
     CLASSES, DENSITY, DensityStorage, MeasuredError, NOISE, NORMALS, PALETTE, PARAMS, PLACEMENT, PlacementKind, TILES,

@@ -69,7 +69,7 @@ pub fn candidates(drafts: &mut Drafts<'_>, scene: &Scene, view: &View) -> Result
         if found.points.is_empty() && bytes < all_bytes {
             found.dropped.push(format!(
                 "tiles finer than {tile} texels: no footprint reads them ({} at this error)",
-                crate::info::kib(all_bytes - bytes)
+                crate::quantities::kib(all_bytes - bytes)
             ));
         }
         let error = made.iter().zip(&sizes).map(|((_, material), sizes)| worst(material, sizes)).fold(0.0, f64::max);

@@ -1,6 +1,6 @@
 //! Pictures of NDF tiles, of the example's normals, and of who owns which sub-region of a stochastic surface.
 
-use crate::canvas::Canvas;
+use crate::canvas::{Canvas, colour_wheel, heat};
 use glam::Vec2;
 use glint_bake_core::ndf_maps::bake::BakedNdfMaps;
 use glint_bake_core::ndf_maps::placement::BakedPlacement;
@@ -52,21 +52,6 @@ fn disk_point(x: u32, y: u32, cell: u32, inside: Vec2) -> Vec2 {
     Vec2::new(p.x, -p.y) * 1.04
 }
 
-/// Black over red and yellow to white.
-pub fn heat(value: f32) -> [u8; 3] {
-    [3.0, 1.6, 0.6].map(|gain| {
-        let start = if gain > 2.0 {
-            0.0
-        } else if gain > 1.0 {
-            0.28
-        } else {
-            0.6
-        };
-        let channel = ((value - start).max(0.0) / (1.0 - start)).powf(1.0 / gain);
-        (255.0 * channel.min(1.0)) as u8
-    })
-}
-
 /// The example's normals in the usual colours, enlarged.
 pub fn normals(maps: &BakedNdfMaps) -> Canvas {
     let (width, height) = (maps.params.width, maps.params.height);
@@ -115,11 +100,4 @@ pub fn owners(placement: &BakedPlacement) -> Option<Canvas> {
         }
     }
     Some(canvas)
-}
-
-pub fn colour_wheel(hue: f32) -> [u8; 3] {
-    [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|shift| {
-        let wave = (std::f32::consts::TAU * (hue + shift)).cos();
-        (120.0 + 85.0 * wave) as u8
-    })
 }
