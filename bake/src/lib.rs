@@ -13,5 +13,7 @@ mod pack_access;
 pub mod progress;
 pub mod quality;
 pub mod rng;
+mod shader;
+pub mod shaders;
 pub mod surface;
 pub mod synthesis;

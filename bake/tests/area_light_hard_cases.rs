@@ -10,8 +10,8 @@ use glint_bake_core::error::BakeError;
 use glint_bake_core::normal_map::{HORIZON, NormalMap};
 use glint_bake_core::progress::Silent;
 use glint_bake_core::rng::ItemRng;
+use glint_formats::Wrap;
 use glint_formats::area_light::NormalStorage;
-use glint_formats::ndf_maps::Wrap;
 
 fn map(width: u32, height: u32, wrap: Wrap, normal: impl Fn(u32, u32) -> [f32; 2]) -> NormalMap {
     let projected = (0..width * height).map(|k| normal(k % width, k / width)).collect();

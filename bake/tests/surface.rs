@@ -13,8 +13,8 @@ use glint_bake_core::surface::quality::{Exact, Measured, seam_footprints};
 use glint_bake_core::surface::sections::{from_pack, surfaces, to_sections};
 use glint_bake_core::surface::{Surface, SurfaceSettings, bake};
 use glint_bake_core::synthesis::{SynthesisOptions, Target};
+use glint_formats::Wrap;
 use glint_formats::lobes::Filter;
-use glint_formats::ndf_maps::Wrap;
 use glint_formats::{Codec, Limits, Pack, PackBuilder};
 
 /// Waves with noise on them: something smooth, something rough.

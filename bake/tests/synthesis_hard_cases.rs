@@ -7,7 +7,7 @@ use glint_bake_core::rng::ItemRng;
 use glint_bake_core::synthesis::measure::{feature_ends, repetition, seam_ratio, whole_share};
 use glint_bake_core::synthesis::sections::{from_pack, surfaces, to_sections};
 use glint_bake_core::synthesis::{Synthesis, SynthesisOptions, Target, assemble, bake};
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 use glint_formats::synthesis::Layout;
 use glint_formats::{Codec, Limits, Pack, PackBuilder};
 use std::collections::BTreeSet;

@@ -9,7 +9,7 @@ use glint_bake_core::synthesis::features::{Features, distance};
 use glint_bake_core::synthesis::reference::{self, ReferenceFeatures};
 use glint_bake_core::synthesis::seams::{cut, push_path};
 use glint_bake_core::synthesis::{Synthesis, SynthesisOptions, Target, assemble, bake};
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 use glint_formats::synthesis::{Layout, PathShape};
 
 /// Waves with noise: neighbours are alike, distant texels are not.

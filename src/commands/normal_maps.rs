@@ -5,8 +5,8 @@ use crate::exit::{Exit, Failure};
 use crate::input::{Channels, Crop, InputOptions, LoadedMap};
 use clap::ValueEnum;
 use glint_bake_core::normal_map::GreenAxis;
+use glint_formats::Wrap;
 use glint_formats::container::MAX_NAME_BYTES;
-use glint_formats::ndf_maps::Wrap;
 use glint_formats::provenance::InputDigest;
 use std::path::Path;
 

@@ -3,8 +3,8 @@
 use super::text::{kib, percent};
 use glint_bake_core::lobes::{BakedLobes, sections};
 use glint_formats::Pack;
+use glint_formats::Wrap;
 use glint_formats::lobes::{Filter, FootprintError, LobeStorage, Merge, NormalsStorage};
-use glint_formats::ndf_maps::Wrap;
 use serde::Serialize;
 use std::fmt::Write;
 

@@ -3,8 +3,9 @@
 use super::text::{kib, percent};
 use crate::pack::{PAPER_TILE_BYTES, storage_name};
 use glint_bake_core::ndf_maps::eval::Material;
+use glint_formats::Wrap;
 use glint_formats::ndf_maps::{
-    CLASSES, DENSITY, MeasuredError, NOISE, NORMALS, PALETTE, PARAMS, PLACEMENT, PlacementKind, TILES, Wrap,
+    CLASSES, DENSITY, MeasuredError, NOISE, NORMALS, PALETTE, PARAMS, PLACEMENT, PlacementKind, TILES,
 };
 use glint_formats::{FourCc, Pack};
 use serde::Serialize;

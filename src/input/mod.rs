@@ -20,7 +20,7 @@ use std::path::Path;
 
 use glint_bake_core::error::BakeError;
 use glint_bake_core::normal_map::{GreenAxis, NormalMap, NormalOptions, NormalReport, RawNormals};
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 
 pub use error::InputError;
 use format::Format;

@@ -5,9 +5,9 @@ use super::eval::Roughness;
 use super::material::AreaLightMaterial;
 use super::spread;
 use glam::{Vec2, Vec3, Vec4};
+use glint_formats::Wrap;
 use glint_formats::area_light::NormalStorage;
 use glint_formats::container::full_mip_count;
-use glint_formats::ndf_maps::Wrap;
 
 /// Most mips of a map.
 const MAX_MIPS: usize = 15;

@@ -28,5 +28,7 @@ pub mod round;
 pub mod sections;
 pub mod tables;
 
+crate::shader::shaders!("dictionary": "eval");
+
 pub use bake::bake;
 pub use options::DictionaryOptions;

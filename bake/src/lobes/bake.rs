@@ -17,8 +17,8 @@ use crate::progress::Progress;
 use crate::quality::sweep;
 use crate::rng::ItemRng;
 use glam::{DVec2, Vec2};
+use glint_formats::Wrap;
 use glint_formats::lobes::{FootprintError, LobeLevel, LobeStorage, LobesParams, MAX_LAST_CELLS, NormalsStorage};
-use glint_formats::ndf_maps::Wrap;
 use rayon::prelude::*;
 
 /// Cells that are reduced from seeds, one a texel, in texels; half that for four seeds a texel. Finer than the stored levels:

@@ -15,8 +15,8 @@ use super::quantise::Scales;
 use super::span::{Slot, slots, span_x};
 use crate::footprint::Footprint;
 use glam::{DVec2, Mat2, Vec2};
+use glint_formats::Wrap;
 use glint_formats::lobes::Filter;
-use glint_formats::ndf_maps::Wrap;
 
 /// Choice between speed and accuracy at run time.
 #[derive(Clone, Copy, Debug, PartialEq)]

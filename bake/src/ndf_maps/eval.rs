@@ -7,7 +7,8 @@ use super::bake::BakedNdfMaps;
 use super::placement::BakedPlacement;
 use super::spline::Taps;
 use glam::{Mat2, Vec2};
-use glint_formats::ndf_maps::{DensityStorage, Wrap};
+use glint_formats::Wrap;
+use glint_formats::ndf_maps::DensityStorage;
 use half::f16;
 
 /// A material as a renderer holds it: one example's maps and how they cover the surface.

@@ -20,7 +20,7 @@ pub use report::{NormalReport, SEAM_RATIO, SeamRatio};
 pub use validate::{HORIZON, MAX_BELOW_HORIZON, MAX_ZERO_LENGTH, ZERO_LENGTH};
 
 use glam::{DMat2, DVec2};
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 
 use crate::error::{BakeError, Result};
 

@@ -1,6 +1,6 @@
 //! Normals as they come in, before any check: vectors, two channels, or the slopes of a height field.
 
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 use serde::{Deserialize, Serialize};
 
 use super::crop_rows;

@@ -1,6 +1,6 @@
 //! What a normal map is like: lengths as they came in, then mean, spread, convention, seams of the mended map.
 
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 use serde::Serialize;
 
 use super::{NormalMap, convention};

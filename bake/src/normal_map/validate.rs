@@ -74,7 +74,7 @@ impl NormalMap {
         height: u32,
         heights: &[f32],
         scale_texels: f32,
-        wrap: glint_formats::ndf_maps::Wrap,
+        wrap: glint_formats::Wrap,
     ) -> Result<(NormalMap, NormalReport)> {
         let raw = RawNormals::from_heights(width, height, heights, scale_texels, wrap)?;
         NormalMap::from_vectors(&raw, &NormalOptions { wrap, y: GreenAxis::Up })

@@ -3,7 +3,7 @@
 use super::options::SynthesisOptions;
 use crate::normal_map::NormalMap;
 use crate::rng::ItemRng;
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 use std::collections::BTreeSet;
 
 /// Purpose of the random numbers that thin out candidates.

@@ -10,7 +10,7 @@ use super::choose::{CROWDING, PURPOSE, Radii, SHORTLIST};
 use super::options::SynthesisOptions;
 use crate::normal_map::NormalMap;
 use crate::rng::ItemRng;
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 
 /// Sample texel (column, row).
 pub type Texel = (u32, u32);
