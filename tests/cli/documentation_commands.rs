@@ -380,3 +380,38 @@ fn blocks_are_read_as_a_user_reads_them() {
     assert_eq!(normalised("  PROV  x 728 bytes"), normalised("PROV x 9 bytes"));
     assert_ne!(normalised("NMDE x 728 bytes"), normalised("NMDE x 9 bytes"));
 }
+
+/// The last column of a method's table of symbols names items of `bake` and `formats`.
+#[test]
+fn every_name_of_a_symbol_is_in_the_sources() {
+    let mut files = Vec::new();
+    ["bake/src", "formats/src"].iter().for_each(|folder| sources(&root().join(folder), &mut files));
+    let sources: String = files.iter().map(|file| fs::read_to_string(file).unwrap()).collect();
+    let words: std::collections::HashSet<&str> =
+        sources.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty()).collect();
+    let mut wrong = Vec::new();
+    for page in pages().iter().filter(|page| page.starts_with("docs/methods")) {
+        let text = fs::read_to_string(root().join(page)).unwrap();
+        let table = text.split("\n## Symbols\n").nth(1).unwrap_or_else(|| panic!("{}: no symbols", page.display()));
+        let rows = table.lines().take_while(|line| !line.starts_with("## ")).filter(|line| line.starts_with("| "));
+        for row in rows {
+            let names = row.trim_end_matches(" |").rsplit(" | ").next().unwrap();
+            for name in names.split('`').skip(1).step_by(2).filter(|name| !words.contains(name)) {
+                wrong.push(format!("{}: `{name}` of {row}", page.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "no source has\n{}", wrong.join("\n"));
+}
+
+/// All pages of methods have the same chapters in the same order.
+#[test]
+fn pages_of_methods_have_one_layout() {
+    const CHAPTERS: [&str; 8] =
+        ["Idea", "Symbols", "Definition", "Bake", "Run time", "Deviations from the paper", "Limits", "Measured"];
+    for page in pages().iter().filter(|page| page.starts_with("docs/methods")) {
+        let text = fs::read_to_string(root().join(page)).unwrap();
+        let chapters: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("## ")).collect();
+        assert_eq!(chapters, CHAPTERS, "{}", page.display());
+    }
+}
