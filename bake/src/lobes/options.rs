@@ -18,7 +18,8 @@ pub(crate) const TEXEL_BYTES: u64 = size_of::<[u32; 2]>() as u64;
 /// How the map's normals are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NormalsChoice {
-    /// 8 bits where they round by less than [`ROUNDING`] σ_r (root mean square), else 16.
+    /// 8 bits where they round by less than [`ROUNDING`] σ_r (root mean square), else 16. A GPU holds both in words of 32 bits;
+    /// compressed files are smaller with 8.
     Auto,
     /// 8 bits a channel.
     Unorm8,
@@ -35,14 +36,14 @@ pub fn default_cell(width: u32, height: u32) -> u32 {
 /// Rounding of 8-bit normals that is let pass, over σ_r, root mean square.
 pub const ROUNDING: f64 = 0.03;
 
-/// Options of one map's bake.
+/// Options of one map's bake. Errors call them `roughness`, `k`, `cell` and `seeds`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LobesOptions {
-    /// Intrinsic roughness σ_r that lobes are merged for: a standard deviation in the projected-normal disk.
+    /// Intrinsic roughness σ_r that lobes are merged for, in [`ROUGHNESS_RANGE`]: a standard deviation in the projected-normal disk.
     pub roughness: f64,
-    /// Lobes a cell.
+    /// Lobes a cell, `k`: 1 to [`MAX_LOBES_PER_CELL`].
     pub lobes_per_cell: u32,
-    /// Edge of the finest level's cells in texels, a power of two.
+    /// Edge of the finest level's cells in texels, `cell`: a power of two in [`CELL_RANGE`].
     pub cell_texels: u32,
     /// How lobes of a cell are reduced.
     pub merge: Merge,
@@ -87,8 +88,7 @@ impl LobesOptions {
         let texels = map.width as u64 * map.height as u64;
         if texels > MAX_TEXELS || map.width.max(map.height) > MAX_TEXTURE_SIZE {
             return Err(BakeError::LimitExceeded(format!(
-                "a map of {} × {} is larger than the {MAX_TEXELS} texels, {MAX_TEXTURE_SIZE} along an edge, that lobes are \
-                 meant for; use a part of it with --crop WxH+X+Y",
+                "map: expected {MAX_TEXELS} texels at most, {MAX_TEXTURE_SIZE} along an edge, found {} × {}; give a part of it",
                 map.width, map.height
             )));
         }
@@ -119,17 +119,17 @@ impl LobesOptions {
         let bad = |message: String| Err(BakeError::BadOption(message));
         let (low, high) = ROUGHNESS_RANGE;
         if !(low..=high).contains(&self.roughness) {
-            return bad(format!("--roughness: expected {low} to {high}, found {}", self.roughness));
+            return bad(format!("roughness: expected {low} to {high}, found {}", self.roughness));
         }
         if !(1..=MAX_LOBES_PER_CELL).contains(&self.lobes_per_cell) {
-            return bad(format!("--k: expected 1 to {MAX_LOBES_PER_CELL} lobes, found {}", self.lobes_per_cell));
+            return bad(format!("k: expected 1 to {MAX_LOBES_PER_CELL} lobes, found {}", self.lobes_per_cell));
         }
         let (low, high) = CELL_RANGE;
         if !(low..=high).contains(&self.cell_texels) || !self.cell_texels.is_power_of_two() {
-            return bad(format!("--cell: expected a power of two from {low} to {high}, found {}", self.cell_texels));
+            return bad(format!("cell: expected a power of two from {low} to {high}, found {}", self.cell_texels));
         }
         if ![1, 4].contains(&self.seeds) {
-            return bad(format!("--seeds: expected 1 or 4, found {}", self.seeds));
+            return bad(format!("seeds: expected 1 or 4, found {}", self.seeds));
         }
         Ok(())
     }
