@@ -134,8 +134,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
 }
 
 fn bake_pack(args: &Args, terminal: Terminal) -> Result<(), Failure> {
-    let options = args.options();
-    options.validate()?;
+    let options = args.checked_options()?;
     let inputs = [args.input.clone()];
     let delivery = Delivery { output: &args.output, inputs: &inputs, run: &args.run };
     delivery.check()?;
@@ -167,8 +166,7 @@ fn bake_pack(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         return Ok(());
     }
     let stages = Stages::new(terminal);
-    let environment = bake(&loaded.image, loaded.negative_pixels, &options, &stages)
-        .map_err(|error| Failure::bake(&args.input, &error))?;
+    let environment = bake(&loaded.image, &options, &stages).map_err(|error| Failure::bake(&args.input, &error))?;
     warn_of_rounding(&environment.params, &args.input, terminal);
     let codec = if args.compress { Codec::Zstd } else { Codec::None };
     let sections = sections::to_sections(&args.name(), &environment, codec);
@@ -192,11 +190,9 @@ fn warn_of_rounding(params: &EnvironmentParams, input: &Path, terminal: Terminal
 
 /// A bake that is only looked at: image and environment, and the bytes that the pack would have.
 pub(super) fn draft(args: &Args) -> Result<((EnvironmentImage, Environment), u64), Failure> {
-    let options = args.options();
-    options.validate()?;
+    let options = args.checked_options()?;
     let loaded = load_environment(&args.input, args.run.max_memory)?;
-    let environment = bake(&loaded.image, loaded.negative_pixels, &options, &Silent)
-        .map_err(|error| Failure::bake(&args.input, &error))?;
+    let environment = bake(&loaded.image, &options, &Silent).map_err(|error| Failure::bake(&args.input, &error))?;
     let codec = if args.compress { Codec::Zstd } else { Codec::None };
     let sections = sections::to_sections(&args.name(), &environment, codec);
     let bytes = pack::seal(&args.provenance(&loaded), sections)?.len() as u64;
@@ -206,6 +202,14 @@ pub(super) fn draft(args: &Args) -> Result<((EnvironmentImage, Environment), u64
 impl Args {
     fn min_face_size(&self) -> u32 {
         self.min_face_size.unwrap_or(DEFAULT_MIN_FACE_SIZE.min(self.face_size))
+    }
+
+    /// The options, once they are known to make sense.
+    fn checked_options(&self) -> Result<EnvironmentOptions, Failure> {
+        let options = self.options();
+        // Flags have the names of the options.
+        options.validate().map_err(|error| Failure::usage(format!("--{error}")))?;
+        Ok(options)
     }
 
     fn options(&self) -> EnvironmentOptions {
