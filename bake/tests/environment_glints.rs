@@ -11,7 +11,7 @@ use glint_bake_core::environment::quality::relative_variance;
 use glint_bake_core::environment::reference::FacetSurface;
 use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, albedo, bake};
 use glint_bake_core::progress::Silent;
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 use glint_formats::environment::MAX_LEVELS;
 use std::f64::consts::PI;
 
@@ -67,7 +67,7 @@ fn drawn_from(surface: &FacetSurface, facets: f32) -> Surface {
 }
 
 fn words(seed: u64, draw: u32) -> [f32; MAX_LEVELS] {
-    let mut rng = ItemRng::new(seed, 99, draw);
+    let mut rng = ItemRng::new(seed, Purpose::Test(99), draw);
     std::array::from_fn(|_| unit_from_bits(rng.bits()))
 }
 

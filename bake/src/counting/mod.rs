@@ -8,7 +8,7 @@
 //! (1 − p)^N against the paper's; [`reference`](mod@reference) says the same as [`eval`] from the definitions in f64, and
 //! [`quality`] measures one by the other.
 //!
-//! What deviates from the paper, and why, stands on top of each file and in `docs/METHODS.md`. The main points:
+//! What deviates from the paper, and why, stands on top of each file and in `docs/methods/counting.md`. The main points:
 //! - counts are whole numbers, their mean is Np, and their variance that of the binomial distribution;
 //! - one random word a binomial draw instead of two numbers, and counts change monotonously with p for a fixed word;
 //! - counts above 2²⁴ come with what rounding to f32 takes from them ([`Count`]): their variance holds to N = 1e16;

@@ -7,7 +7,7 @@
 //! roughness only ([`albedo`]), and one draw a pixel is made with the random words of a place on the surface ([`query`]).
 //! [`reference`] sums over every pixel in f64 and places facets one by one, and [`quality`] measures one by the other.
 //!
-//! What deviates from the paper, and why, stands on top of each file and in `docs/METHODS.md`. The main points:
+//! What deviates from the paper, and why, stands on top of each file and in `docs/methods/environment.md`. The main points:
 //! - filtering to an error bound by a tree of the source, without samples ([`tree`], [`prefilter`]);
 //! - the source is resampled by exact areas;
 //! - levels chosen for the least error of the second moment;
