@@ -5,8 +5,9 @@ use super::bake::draft;
 use crate::exit::Failure;
 use crate::methods::planning::{Candidates, Request, USED};
 use glam::DVec3;
-use glint_bake_core::environment::eval::environment_radiance;
+use glint_bake_core::environment::eval::environment_mip;
 use glint_bake_core::environment::image::luminance;
+use glint_bake_core::environment::lookup::radiance_at;
 use glint_bake_core::environment::reference::filtered;
 use glint_bake_core::environment::{Environment, EnvironmentImage, sections};
 use glint_bake_core::rng::{ItemRng, Purpose};
@@ -89,7 +90,8 @@ fn error(environment: &Environment, lookups: &[Lookup]) -> f64 {
     let of = |first: usize| {
         let (mut errors, mut power) = (0.0, 0.0);
         for lookup in lookups.iter().skip(first).step_by(ROUGHNESSES as usize) {
-            let found = environment_radiance(environment, lookup.direction.as_vec3(), lookup.alpha as f32);
+            let mip = environment_mip(environment, lookup.alpha as f32);
+            let found = radiance_at(environment, lookup.direction.as_vec3(), mip);
             let found = luminance([0, 1, 2].map(|c| f64::from(found[c])));
             errors += (found - lookup.luminance).powi(2);
             power += lookup.luminance.powi(2);
