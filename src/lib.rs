@@ -3,6 +3,7 @@
 pub mod canvas;
 pub mod cli;
 pub mod commands;
+pub mod delivery;
 pub mod exit;
 pub mod info;
 pub mod input;
@@ -14,3 +15,4 @@ pub mod preview;
 pub mod progress;
 pub mod project;
 pub mod quantities;
+pub mod scene;

@@ -7,7 +7,7 @@ use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::project::freshness::Freshness;
 use crate::project::settled::{self, Fit};
-use crate::project::{Project, Target};
+use crate::project::{self, Project, Target};
 use clap::builder::RangedU64ValueParser;
 use glint_formats::container::{TEMPORARY_PREFIX, TEMPORARY_SUFFIX};
 use rayon::prelude::*;
@@ -57,7 +57,7 @@ const MOST_IN_FLIGHT: usize = 4;
 
 /// Runs the subcommand.
 pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
-    let mut project = Project::load(&args.project)?;
+    let mut project = project::load(&args.project)?;
     if let Some(threads) = args.threads {
         // Bakes run on the pool of the whole process, so that all packs share its threads.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build_global();

@@ -80,8 +80,10 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         output::write(&pack_path, &bake(terminal)?)?;
         let baked = start.elapsed();
         let report = read_back(&pack_path)?;
-        for material in &report.materials {
-            terminal.say(&format!("{:<6} {}", format!("{}:", material.name), material.accuracy_line()));
+        for item in report.contents.items() {
+            if let Some(line) = item.accuracy_line() {
+                terminal.say(&format!("{:<6} {line}", format!("{}:", item.name())));
+            }
         }
         let file = pack_path.display();
         terminal.say(&format!(

@@ -1,7 +1,8 @@
 //! Flags of `glint-bake area-light`.
 
-use crate::cli::RunFlags;
 use crate::cli::normal_maps::{InputFlags, check_name, unique_name};
+use crate::cli::{OptionList, RunFlags};
+use crate::delivery::Delivery;
 use crate::exit::Failure;
 use clap::ValueEnum;
 use glint_bake_core::area_light::AreaLightOptions;
@@ -78,9 +79,31 @@ impl Args {
         }
     }
 
+    /// Name of the material.
+    ///
+    /// # Errors
+    /// Usage, when it cannot be one.
     pub fn name(&self) -> Result<String, Failure> {
         let Some(name) = &self.name else { return Ok(unique_name(&self.map, &[])) };
         check_name(name)?;
         Ok(name.clone())
+    }
+
+    /// Where the pack goes.
+    pub fn delivery(&self) -> Delivery<'_> {
+        Delivery { output: &self.output, inputs: std::slice::from_ref(&self.map), run: &self.run }
+    }
+
+    /// Options for provenance. Flags that do not change the pack's bytes are left out.
+    pub fn option_list(&self) -> OptionList {
+        let mut options = OptionList::default();
+        options.push("base-roughness", self.base_roughness);
+        options.push("anisotropic", self.anisotropic);
+        options.push_choice("format", &self.format);
+        if self.skip_mips > 0 {
+            options.push("skip-mips", self.skip_mips);
+        }
+        options.extend(self.input.option_list());
+        options
     }
 }

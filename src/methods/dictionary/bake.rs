@@ -3,8 +3,8 @@
 use super::args::Args;
 use super::info::DictionaryInfo;
 use crate::cli::Terminal;
-use crate::commands::bake::Delivery;
 use crate::exit::Failure;
+use crate::methods::method::{FinishedPack, provenance};
 use crate::pack;
 use glint_bake_core::dictionary::{self, quality, sections};
 use glint_formats::Codec;
@@ -15,11 +15,11 @@ const NAME: &str = "dictionary";
 /// What makes a dictionary smaller.
 const SMALLER: &str = "give fewer --marginals, --levels or --entries";
 
-/// Runs the subcommand, on one thread however many are offered: a dictionary takes hundredths of a second.
-pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
+/// Checks everything, then bakes, on one thread however many are offered: a dictionary takes hundredths of a second.
+pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Failure> {
     let options = args.options();
     options.validate()?;
-    let delivery = Delivery { output: &args.output, inputs: &[], run: &args.run };
+    let delivery = args.delivery();
     delivery.check()?;
     delivery.check_size(2 * options.tables() * u64::from(options.entries), SMALLER)?;
     if args.run.dry_run {
@@ -28,30 +28,13 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
             args.output.display(),
             DictionaryInfo::size_line(options.marginals, options.levels, options.entries)
         ));
-        return Ok(());
+        return Ok(None);
     }
     let dictionary = dictionary::bake(&options)?;
     let codec = if args.compress { Codec::Zstd } else { Codec::None };
     let sections = sections::to_sections(NAME, &dictionary, quality::measure(&dictionary), codec);
     drop(dictionary);
-    let bytes = pack::seal(&args.provenance(), sections)?;
-    delivery.write(bytes, SMALLER, terminal)
-}
-
-impl Args {
-    /// Where the pack comes from. Flags that do not change its contents are left out.
-    fn provenance(&self) -> Provenance {
-        let options = [
-            ("marginals", self.marginals.to_string()),
-            ("levels", self.levels.to_string()),
-            ("entries", self.entries.to_string()),
-            ("alpha-dict", self.alpha_dict.to_string()),
-            ("lobe-std", self.lobe_std.to_string()),
-        ];
-        Provenance {
-            options: options.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
-            seed: self.seed,
-            ..pack::provenance("dictionary")
-        }
-    }
+    let provenance = Provenance { seed: args.seed, ..provenance::<Args>("dictionary", args.option_list()) };
+    let bytes = pack::seal(&provenance, sections)?;
+    Ok(Some(FinishedPack { bytes, smaller: SMALLER }))
 }

@@ -1,6 +1,7 @@
 //! Flags of `glint-bake environment`.
 
-use crate::cli::{RunFlags, values};
+use crate::cli::{OptionList, RunFlags, values};
+use crate::delivery::Delivery;
 use clap::ValueEnum;
 use glint_bake_core::environment::EnvironmentOptions;
 use glint_bake_core::environment::options::{DEFAULT_MIN_FACE_SIZE, LevelCount};
@@ -74,10 +75,13 @@ pub struct Args {
     pub run: RunFlags,
 }
 
+/// `--levels` for the fewest that keep an error.
+pub const LEVELS_AUTO: &str = "auto";
+
 /// A number of levels; 0 for `auto`.
 fn level_count(text: &str) -> Result<u32, String> {
     match text {
-        "auto" => Ok(0),
+        LEVELS_AUTO => Ok(0),
         _ => text
             .parse()
             .ok()
@@ -116,7 +120,8 @@ pub enum FormatArg {
 }
 
 impl Args {
-    pub fn min_face_size(&self) -> u32 {
+    /// Edge of a face of the last mip in texels.
+    fn min_face_size(&self) -> u32 {
         self.min_face_size.unwrap_or(DEFAULT_MIN_FACE_SIZE.min(self.face_size))
     }
 
@@ -160,6 +165,31 @@ impl Args {
             name.push(c);
         }
         name
+    }
+
+    /// Where the pack goes.
+    pub fn delivery(&self) -> Delivery<'_> {
+        Delivery { output: &self.output, inputs: std::slice::from_ref(&self.input), run: &self.run }
+    }
+
+    /// Options for provenance, as they were used. Flags that do not change the pack's contents are left out.
+    pub fn option_list(&self) -> OptionList {
+        let mut options = OptionList::default();
+        options.push("face-size", self.face_size);
+        options.push("min-face-size", self.min_face_size());
+        match self.levels {
+            0 => options.push("levels", LEVELS_AUTO),
+            count => options.push("levels", count),
+        }
+        options.push_choice("level-choice", &self.level_choice);
+        options.push("floor", self.floor);
+        options.push("max-moment-error", self.max_moment_error);
+        options.push("coloured", self.coloured);
+        options.push("max-error", self.max_error);
+        options.push_choice("kernel", &self.kernel);
+        options.push_choice("format", &self.format);
+        options.push("measure", self.measure);
+        options
     }
 }
 

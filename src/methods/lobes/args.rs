@@ -1,10 +1,13 @@
 //! Flags of `glint-bake lobes`.
 
 use super::surface::SurfaceFlags;
-use crate::cli::normal_maps::InputFlags;
-use crate::cli::{RunFlags, values};
+use crate::cli::normal_maps::{InputFlags, check_name, unique_name};
+use crate::cli::{OptionList, RunFlags, values};
+use crate::delivery::Delivery;
+use crate::exit::Failure;
 use clap::ValueEnum;
 use glint_bake_core::lobes::options::{LobesOptions, NormalsChoice, default_cell};
+use glint_bake_core::synthesis::SynthesisOptions;
 use glint_formats::lobes::{Filter, LobeStorage, Merge};
 use std::path::PathBuf;
 
@@ -143,5 +146,44 @@ impl Reduction {
             seed: self.seed,
             ..LobesOptions::default()
         }
+    }
+}
+
+impl Args {
+    /// Where the pack goes.
+    pub fn delivery(&self) -> Delivery<'_> {
+        Delivery { output: &self.output, inputs: std::slice::from_ref(&self.map), run: &self.run }
+    }
+
+    /// Name of the map or surface.
+    ///
+    /// # Errors
+    /// Usage, when it cannot be one.
+    pub fn name(&self) -> Result<String, Failure> {
+        let Some(name) = &self.name else { return Ok(unique_name(&self.map, &[])) };
+        check_name(name)?;
+        Ok(name.clone())
+    }
+
+    /// Options for provenance, as they were used. Flags that do not change the pack's bytes are left out.
+    pub fn option_list(&self, used: &LobesOptions, synthesis: Option<&SynthesisOptions>) -> OptionList {
+        let given = &self.reduction;
+        let mut options = OptionList::default();
+        options.push("roughness", given.roughness);
+        options.push("k", given.k);
+        options.push("cell", used.cell_texels);
+        options.push_choice("merge", &given.merge);
+        options.push("seeds", given.seeds);
+        options.push("nearest", given.nearest);
+        options.push_choice("storage", &given.storage);
+        options.push_choice("normals", &given.normals);
+        options.extend(self.input.option_list());
+        if let Some(synthesis) = synthesis {
+            options.extend(self.surface.option_list(synthesis));
+        }
+        if let Some(error) = given.max_error {
+            options.push("max-error", error);
+        }
+        options
     }
 }

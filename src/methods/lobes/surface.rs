@@ -1,6 +1,7 @@
 //! Flags of `glint-bake lobes` that turn a map into a surface of patches, and the normal map of that surface.
 
 use crate::canvas::Canvas;
+use crate::cli::OptionList;
 use crate::cli::values::{self, SurfaceSize};
 use crate::exit::Failure;
 use crate::output;
@@ -143,22 +144,22 @@ impl SurfaceFlags {
         output::write(path, &picture.to_png()).map(|_| ())
     }
 
-    /// Flags that change the pack's bytes, as provenance names them.
-    pub fn provenance(&self, used: &SynthesisOptions) -> Vec<(&'static str, String)> {
+    /// Options for provenance, as they were used: the flags that change the pack's bytes.
+    pub fn option_list(&self, used: &SynthesisOptions) -> OptionList {
+        let mut options = OptionList::default();
         let size = match used.target {
-            Target::Patches { width, height } => format!("{width}x{height}"),
-            Target::Unbounded { .. } => "unbounded".to_owned(),
+            Target::Patches { width, height } => SurfaceSize::Texels(width, height),
+            Target::Unbounded { .. } => SurfaceSize::Unbounded,
         };
-        let mut flags = vec![
-            ("synthesize", size),
-            ("patch", used.patch.to_string()),
-            ("overlap", used.overlap.to_string()),
-            ("alpha", used.alpha.to_string()),
-            ("error-tolerance", used.error_tolerance.to_string()),
-        ];
+        options.push("synthesize", values::surface_size_text(size));
+        options.push("patch", used.patch);
+        options.push("overlap", used.overlap);
+        options.push("alpha", used.alpha);
+        options.push("error-tolerance", used.error_tolerance);
         if let Target::Unbounded { colours, variants } = used.target {
-            flags.extend([("colours", colours.to_string()), ("variants", variants.to_string())]);
+            options.push("colours", colours);
+            options.push("variants", variants);
         }
-        flags
+        options
     }
 }

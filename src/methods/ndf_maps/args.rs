@@ -1,8 +1,12 @@
 //! Flags of `glint-bake ndf-maps`.
 
 use crate::cli::normal_maps::InputFlags;
-use crate::cli::{RunFlags, values};
+use crate::cli::{OptionList, RunFlags, values};
+use crate::delivery::Delivery;
+use crate::exit::Failure;
 use clap::ValueEnum;
+use glint_bake_core::ndf_maps::bake::{FINEST_TILE, NdfMapsOptions, ROUGHNESS_RANGE};
+use glint_bake_core::ndf_maps::placement::{PlacementOptions, StochasticOptions};
 use glint_bake_core::ndf_maps::transform::TransformRanges;
 use glint_formats::ndf_maps::DensityStorage;
 use std::path::PathBuf;
@@ -132,8 +136,13 @@ pub enum PlacementArg {
 }
 
 impl Args {
+    /// Where the pack goes.
+    pub fn delivery(&self) -> Delivery<'_> {
+        Delivery { output: &self.output, inputs: &self.maps, run: &self.run }
+    }
+
     /// Error asked of every tile.
-    pub fn wanted_error(&self) -> f64 {
+    fn wanted_error(&self) -> f64 {
         self.max_error.unwrap_or(match self.preset {
             Preset::Draft => 0.05,
             Preset::Balanced => 0.01,
@@ -142,12 +151,98 @@ impl Args {
     }
 
     /// How densities are stored.
-    pub fn wanted_storage(&self) -> DensityStorage {
-        let by_preset = if self.preset == Preset::Accurate { Storage::F16 } else { Storage::U8 };
-        match self.storage.unwrap_or(by_preset) {
+    fn wanted_storage(&self) -> Storage {
+        self.storage.unwrap_or(if self.preset == Preset::Accurate { Storage::F16 } else { Storage::U8 })
+    }
+
+    /// Options of every map's bake.
+    ///
+    /// # Errors
+    /// Usage, which names the flag.
+    pub fn options(&self) -> Result<NdfMapsOptions, Failure> {
+        let (low, high) = ROUGHNESS_RANGE;
+        if !(low..=high).contains(&self.roughness) {
+            return Err(Failure::usage(format!("--roughness: expected {low} to {high}, found {}", self.roughness)));
+        }
+        Ok(NdfMapsOptions {
+            roughness: self.roughness,
+            max_error: self.wanted_error(),
+            storage: self.wanted_storage().into(),
+            min_tile: self.min_tile,
+        })
+    }
+
+    /// Options of every map's placement.
+    ///
+    /// # Errors
+    /// Usage, which names the flag.
+    pub fn placement_options(&self) -> Result<PlacementOptions, Failure> {
+        if self.placement == PlacementArg::Tiled {
+            let ranges = self.transforms.unwrap_or_default();
+            // One transform serves every copy, so a range would silently become its lower end.
+            let varies =
+                [ranges.rotate_degrees, ranges.scale, ranges.stretch, ranges.shear].iter().any(|(a, b)| a != b);
+            if varies || ranges.mirror {
+                return Err(Failure::usage(
+                    "--transforms: a tiled placement has one transform for all copies; expected single values such as \
+                 rotate=30, found a range or mirror. Give --placement stochastic for different ones",
+                ));
+            }
+            return Ok(PlacementOptions::Tiled(ranges));
+        }
+        if !(0.25..=8.0).contains(&self.spacing) {
+            return Err(Failure::usage(format!("--spacing: expected 0.25 to 8, found {}", self.spacing)));
+        }
+        Ok(PlacementOptions::Stochastic(StochasticOptions {
+            ranges: self.transforms.unwrap_or(StochasticOptions::default().ranges),
+            palette: self.palette,
+            cells: self.cells,
+            spacing: self.spacing,
+            seed: self.seed,
+        }))
+    }
+
+    /// Options for provenance, as they were used. Flags that do not change the pack's bytes are left out.
+    pub fn option_list(&self, used: &NdfMapsOptions, placement: &PlacementOptions) -> OptionList {
+        let mut options = OptionList::default();
+        options.push("roughness", self.roughness);
+        options.push("max-error", used.max_error);
+        options.push_choice("storage", &Storage::from(used.storage));
+        options.extend(self.input.option_list());
+        options.push_choice("placement", &self.placement);
+        let ranges = match placement {
+            PlacementOptions::Tiled(ranges) => ranges,
+            PlacementOptions::Stochastic(options) => &options.ranges,
+        };
+        options.push("transforms", values::transforms_text(ranges));
+        if self.placement == PlacementArg::Stochastic {
+            options.push("palette", self.palette);
+            options.push("cells", self.cells);
+            options.push("spacing", self.spacing);
+        }
+        if self.min_tile != FINEST_TILE {
+            options.push("min-tile", self.min_tile);
+        }
+        options
+    }
+}
+
+impl From<Storage> for DensityStorage {
+    fn from(storage: Storage) -> DensityStorage {
+        match storage {
             Storage::U8 => DensityStorage::SqrtU8,
             Storage::F16 => DensityStorage::F16,
             Storage::Paper => DensityStorage::PaperF32,
+        }
+    }
+}
+
+impl From<DensityStorage> for Storage {
+    fn from(storage: DensityStorage) -> Storage {
+        match storage {
+            DensityStorage::SqrtU8 => Storage::U8,
+            DensityStorage::F16 => Storage::F16,
+            DensityStorage::PaperF32 => Storage::Paper,
         }
     }
 }
