@@ -215,7 +215,10 @@ impl BakedLobes {
         let mut share = share_beyond(parts, width as f64 * height as f64, most);
         let frame = Frame { mean: Vec2::ZERO, axis: Vec2::X, major: f32::INFINITY, minor: f32::INFINITY };
         let alike = query(frame, roughness);
-        for index in (0..self.params.levels.len()).rev().take_while(|_| share <= most) {
+        for index in (0..self.params.levels.len()).rev() {
+            if share > most {
+                break;
+            }
             let level = self.level(index);
             let count = level.cells_x * level.cells_y * self.params.lobes_per_cell;
             let lobes = (level.first_lobe..level.first_lobe + count).map(|index| self.lobe(&level, index));
