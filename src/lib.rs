@@ -9,6 +9,8 @@ pub mod input;
 pub mod output;
 pub mod pack;
 pub mod plan;
+pub mod plot;
 pub mod preview;
 pub mod progress;
 pub mod project;
+mod report;

@@ -1,6 +1,8 @@
 //! Mean and variance of Σ L_k n_k, the radiance of glints, for K log-uniform levels: ours and the paper's tree against
 //! the multinomial's own moments.
 
+use crate::report::document::Document;
+use crate::report::table::Table;
 use glint_bake_core::counting::normal::unit_from_bits;
 use glint_bake_core::counting::{Count, MAX_LEVELS, multinomial, paper};
 use glint_bake_core::rng::ItemRng;
@@ -22,16 +24,17 @@ fn levels(count: usize) -> ([f32; MAX_LEVELS], [f32; MAX_LEVELS]) {
     (radiance, weight)
 }
 
-/// Prints the table.
-pub fn table() {
-    let draws = 2_000_000u32;
-    println!("\n## Radiance of glints\n");
-    println!(
+/// Adds the table, of so many draws.
+pub fn table(document: &mut Document, draws: u32) {
+    document.heading(2, "Radiance of glints");
+    document.paragraph(format!(
         "Σ L_k n_k of K levels, L from 0 and 10^(4/(K − 1)) to 10⁴, chances falling as L^−0.9, half of the facets black. Mean and \
-         variance over the multinomial's, from {draws} draws; ± is one standard error of ours. Nanoseconds for one draw of all K.\n"
+         variance over the multinomial's, from {draws} draws; ± is one standard error of ours. Nanoseconds for one draw of all K."
+    ));
+    let mut table = Table::new(
+        0,
+        "K | N | paper: mean | ours: mean | ± | paper: variance | ours: variance | ± | paper ns | ours ns",
     );
-    println!("| K | N | paper: mean | ours: mean | ± | paper: variance | ours: variance | ± | paper ns | ours ns |");
-    println!("| --: {}|", "| --: ".repeat(9));
     for count in [1, 2, 4, 8, 16] {
         let (radiance, weight) = levels(count);
         let total: f64 = weight.iter().map(|w| f64::from(*w)).sum();
@@ -67,8 +70,8 @@ pub fn table() {
             };
             let (theirs, ours) = (run(false), run(true));
             let ratio = |x: f64| if variance > 0.0 { format!("{:.3}", x / variance) } else { format!("{x:.1e} / 0") };
-            println!(
-                "| {count} | {n} | {:.3} | {:.3} | {:.3} | {} | {} | {} | {:.0} | {:.0} |",
+            table.row(format!(
+                "{count} | {n} | {:.3} | {:.3} | {:.3} | {} | {} | {} | {:.0} | {:.0}",
                 theirs[0],
                 ours[0],
                 ours[1],
@@ -77,9 +80,10 @@ pub fn table() {
                 if variance > 0.0 { format!("{:.3}", ours[3] / variance) } else { String::new() },
                 nanoseconds(|rng| rng.bits(), |bits| paper::multinomial(n, &weight, count, bits)),
                 nanoseconds(|rng| unit_from_bits(rng.bits()), |words| multinomial(n, &weight, count, words))
-            );
+            ));
         }
     }
+    document.table(&table);
 }
 
 /// Least nanoseconds a draw over passes; `word` makes one of the random words that it reads.

@@ -1,140 +1,64 @@
-//! Error and cost of counting, as markdown on stdout; every number is measured in the run.
+//! Error and cost of counting.
 //!
-//! `counting_report [--svg FILE]` prints the tables and draws mean, variance and shape by the expected count. Errors
-//! come from going through the random words (`counting::quality`), not from drawing; one table draws 10⁷ times as a
-//! check.
+//! Errors come from going through the random words (`counting::quality`), not from drawing; one table draws 10⁷ times as
+//! a check.
 
-mod plot;
+mod errors;
 mod radiance;
 mod variants;
 
-use glint_bake_core::counting::binomial::FEW;
+use super::document::Document;
+use super::settings::Settings;
+use super::table::Table;
+use crate::exit::Failure;
+use crate::plot::{Axis, Colour, Figure, Panel, Series};
+use errors::{TRIALS, WORST_COLUMNS, Worst, chances, measure_draw};
 use glint_bake_core::counting::pow1m::{Elementary, Native, pow1m_with};
-use glint_bake_core::counting::quality::{CountingQuality, SecondWord, compare, outcomes};
 use glint_bake_core::counting::reference::ExactBinomial;
 use glint_bake_core::counting::wgsl::LeastExact;
 use glint_bake_core::rng::ItemRng;
 use std::time::Instant;
 use variants::{Draw, Variant, variants};
 
-/// Whole-program optimisation of this build, for the timings.
-const LTO: &str = match option_env!("CARGO_PROFILE_RELEASE_LTO") {
-    Some(lto) => lto,
-    None => "as in Cargo.toml",
-};
-
-fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let svg = match arguments.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
-        [] => None,
-        ["--svg", svg] => Some(svg.to_string()),
-        _ => return eprintln!("usage: counting_report [--svg FILE]"),
-    };
-    println!("# Counting: error and cost\n");
-    println!("Written by `just report`; do not edit. The plot is [counting-report.svg](counting-report.svg).");
-    if cfg!(debug_assertions) {
-        println!("Development build, the library optimised.\n");
-    } else {
-        println!("Release build, lto {LTO}.\n");
-    }
-    let all = variants();
-    by_trials(&all[0], &all[1]);
-    front(&all);
-    cost(&all);
-    draws(&all[0], &all[1]);
-    radiance::table();
-    powers();
-    if let Some(file) = svg {
-        std::fs::write(file, plot::plot(&all)).expect("writing the plot");
-    }
+/// Measures the report.
+pub fn measure(settings: &Settings) -> Result<Document, Failure> {
+    let mut document = Document::new("counting", "Counting: error and cost", settings);
+    let mut all = variants();
+    document.plot("", "mean, variance and shape by the expected count", &figure(&all, settings.pick(40, 4)));
+    by_trials(&mut document, &all[0], &all[1], settings);
+    all.truncate(settings.pick(usize::MAX, 3));
+    front(&mut document, &all, settings);
+    cost(&mut document, &all);
+    draws(&mut document, &all[0], &all[1], settings);
+    radiance::table(&mut document, settings.pick(2_000_000, 20_000));
+    powers(&mut document, settings);
+    Ok(document)
 }
 
-/// Trials of the grid.
-const TRIALS: [f32; 24] = [
-    0.01, 0.3, 0.9, 1.0, 1.5, 2.0, 2.5, 3.0, 5.0, 8.0, 8.5, 11.0, 13.0, 16.0, 64.0, 300.0, 1e3, 1e4, 1e6, 1e8, 1e10,
-    1e12, 1e14, 1e16,
-];
-
-/// (p, q) of the grid for n trials: fixed ones and fixed expected counts, each also exchanged; expected counts from
-/// 1e-7.
-fn chances(n: f32) -> Vec<(f32, f32)> {
-    let mut rare = vec![1e-16, 1e-12, 1e-9, 1e-7, 1e-5, 1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2, 0.3, 0.4, 0.5];
-    for count in
-        [1e-6, 1e-3, 0.1, 0.5, 1.0, 1.45, 2.0, 2.1, 3.0, 4.1, 5.1, 0.99 * FEW, 1.01 * FEW, 8.1, 12.1, 20.0, 100.0]
-    {
-        rare.push(count / n);
-    }
-    rare.retain(|p| *p <= 0.5 && n * p >= 1e-7);
-    rare.into_iter().flat_map(|p| [(p, 1.0 - p), (1.0 - p, p)]).collect()
+/// Trials of the grid; every sixth for a quick look.
+fn trials(settings: &Settings) -> impl Iterator<Item = f32> {
+    TRIALS.into_iter().step_by(settings.pick(1, 6))
 }
 
-/// Errors of a draw at one place.
-pub fn measure(variant: &Variant, n: f32, p: f32, q: f32) -> (CountingQuality, ExactBinomial) {
-    let exact = ExactBinomial::of_f32(n, p, q);
-    let bisected = variant.whole && exact.variance() < 4e4;
-    let second = if bisected { SecondWord::Bisected } else { SecondWord::Shares(1 << 14) };
-    (compare(&outcomes(|bits| (variant.draw)(n, p, q, bits), second), &exact), exact)
-}
-
-/// Worst figures over places.
-#[derive(Clone, Copy, Default)]
-struct Worst {
-    mean: f64,
-    relative_mean: f64,
-    variance: f64,
-    core_variance: f64,
-    wasserstein: f64,
-}
-
-impl Worst {
-    fn add(&mut self, found: &CountingQuality, exact: &ExactBinomial) {
-        let worse = |old: f64, new: f64| if new.abs() > old.abs() { new } else { old };
-        let expected = exact.trials * exact.p.min(exact.q);
-        self.mean = worse(self.mean, found.mean_error);
-        if expected >= 0.01 {
-            self.relative_mean = worse(self.relative_mean, found.relative_mean_error);
-            self.variance = worse(self.variance, found.variance_error);
-        }
-        if exact.trials >= 8.0 && expected >= 0.5 {
-            self.core_variance = worse(self.core_variance, found.variance_error);
-        }
-        self.wasserstein = worse(self.wasserstein, found.wasserstein);
-    }
-
-    fn cells(&self) -> String {
-        format!(
-            "{:+.1e} | {:+.2} % | {:+.2} % | {:+.2} % | {:.4}",
-            self.mean,
-            100.0 * self.relative_mean,
-            100.0 * self.variance,
-            100.0 * self.core_variance,
-            self.wasserstein
-        )
-    }
-}
-
-const WORST_COLUMNS: &str = "mean, σ | mean, relative | variance | variance, core | W₁/σ";
-
-fn by_trials(paper: &Variant, ours: &Variant) {
-    println!("## By number of trials\n");
-    println!(
+fn by_trials(document: &mut Document, paper: &Variant, ours: &Variant, settings: &Settings) {
+    document.heading(2, "By number of trials");
+    document.paragraph(
         "Worst over p from 1e-16 to 1 − 1e-16 with expected counts Np and Nq of at least 1e-7, of the rarer outcome, against \
          the exact distribution. Mean: (E[n] − Np)/σ, and E[n]/Np − 1 where at least 0.01 are expected, as for the variance; \
          core: N ≥ 8 and 0.5 ≤ Np ≤ N − 0.5. 10⁷ draws tell a mean error of 1.3e-3 σ (|z| = 4). Ours gives a count above 2²⁴ in \
          two f32. The paper's has one; they are σ apart when Np is near 1e14, 11 σ at N = 1e16 and p = ½. The paper's \
-         columns have p ≤ ½ only: it is given no 1 − p.\n"
+         columns have p ≤ ½ only: it is given no 1 − p.",
     );
-    println!("| N | paper: {WORST_COLUMNS} | ours: {WORST_COLUMNS} |");
-    println!("| --: {}|", "| --: ".repeat(10));
+    let mut table = Table::new(0, &format!("N | paper: {WORST_COLUMNS} | ours: {WORST_COLUMNS}"));
     let mut all = Worst::default();
-    for n in TRIALS {
+    for n in trials(settings) {
         let mut worst = [Worst::default(); 2];
         for (p, q) in chances(n) {
             for (i, variant) in [paper, ours].into_iter().enumerate() {
                 if i == 0 && p > q {
                     continue;
                 }
-                let (found, exact) = measure(variant, n, p, q);
+                let (found, exact) = measure_draw(variant, n, p, q);
                 worst[i].add(&found, &exact);
                 if i == 1 {
                     all.add(&found, &exact);
@@ -142,14 +66,15 @@ fn by_trials(paper: &Variant, ours: &Variant) {
             }
         }
         let shown = if n >= 1e6 { format!("{n:.0e}") } else { format!("{n}") };
-        println!("| {shown} | {} | {} |", worst[0].cells(), worst[1].cells());
+        table.row(format!("{shown} | {} | {}", worst[0].cells(), worst[1].cells()));
     }
-    println!(
-        "\nOurs, N to 1e16: mean within **{:.1e} σ**, variance within **{:.2} %**, W₁/σ at most **{:.3}**.",
+    document.table(&table);
+    document.paragraph(format!(
+        "Ours, N to 1e16: mean within **{:.1e} σ**, variance within **{:.2} %**, W₁/σ at most **{:.3}**.",
         all.mean.abs(),
         100.0 * all.variance.abs(),
         all.wasserstein
-    );
+    ));
 }
 
 /// Least nanoseconds a draw of each variant, over passes that take turns.
@@ -188,24 +113,23 @@ fn timed_places() -> Vec<(f32, f32)> {
     places
 }
 
-fn front(all: &[Variant]) {
-    println!("\n## Variants\n");
-    println!(
+fn front(document: &mut Document, all: &[Variant], settings: &Settings) {
+    document.heading(2, "Variants");
+    document.paragraph(format!(
         "Worst over the grid above, N from 2 to 1e6. Cost: nanoseconds a draw on one core over {} places as a ratio to the \
          paper's in the same run, mean and worst place. ★: no other row has both a lower mean cost and a lower worst \
          core variance error. Ours is in the library; the rows below it are in the report's own code and cost a little more. \
-         Both ways every time is about what a GPU pays when neighbouring pixels differ.\n",
+         Both ways every time is about what a GPU pays when neighbouring pixels differ.",
         timed_places().len()
-    );
-    println!("| variant | {WORST_COLUMNS} | cost | worst cost | |");
-    println!("| --- {}| --- |", "| --: ".repeat(7));
+    ));
+    let mut table = Table::new(1, &format!("variant | {WORST_COLUMNS} | cost | worst cost | "));
     let times: Vec<Vec<f64>> = timed_places().iter().map(|&(n, p)| nanoseconds(all, n, p, 1.0 - p)).collect();
     let mut rows = Vec::new();
     for (i, variant) in all.iter().enumerate() {
         let mut worst = Worst::default();
-        for n in TRIALS.into_iter().filter(|n| (2.0..=1e6).contains(n)) {
+        for n in trials(settings).filter(|n| (2.0..=1e6).contains(n)) {
             for (p, q) in chances(n).into_iter().filter(|(p, q)| i > 0 || p <= q) {
-                let (found, exact) = measure(variant, n, p, q);
+                let (found, exact) = measure_draw(variant, n, p, q);
                 worst.add(&found, &exact);
             }
         }
@@ -220,29 +144,32 @@ fn front(all: &[Variant]) {
             let other = r.2.core_variance.abs();
             r.0 <= *cost && other <= error && (r.0 < *cost || other < error)
         });
-        println!("| {name} | {} | {cost:.2} | {most:.2} | {} |", worst.cells(), if beaten { "" } else { "★" });
+        table.row(format!("{name} | {} | {cost:.2} | {most:.2} | {}", worst.cells(), if beaten { "" } else { "★" }));
     }
+    document.table(&table);
 }
 
-fn cost(all: &[Variant]) {
-    println!("\n## Cost by place\n");
-    println!("Nanoseconds a draw on one core, least of 24 passes over 4096 pairs of words; the paths take turns.\n");
-    println!("| N | Np | paper | ours | ratio |\n| --: | --: | --: | --: | --: |");
+fn cost(document: &mut Document, all: &[Variant]) {
+    document.heading(2, "Cost by place");
+    document.paragraph(
+        "Nanoseconds a draw on one core, least of 24 passes over 4096 pairs of words; the paths take turns.",
+    );
+    let mut table = Table::new(0, "N | Np | paper | ours | ratio");
     for (n, p) in timed_places() {
         let t = nanoseconds(&all[..2], n, p, 1.0 - p);
         let shown = |x: f32, digits: usize| if x < 1e6 { format!("{x:.digits$}") } else { format!("{x:.1e}") };
-        println!("| {} | {} | {:.0} | {:.0} | {:.2} |", shown(n, 1), shown(n * p, 3), t[0], t[1], t[1] / t[0]);
+        table.row(format!("{} | {} | {:.0} | {:.0} | {:.2}", shown(n, 1), shown(n * p, 3), t[0], t[1], t[1] / t[0]));
     }
+    document.table(&table);
 }
 
-fn draws(paper: &Variant, ours: &Variant) {
-    let count = 10_000_000u32;
-    println!("\n## Ten million draws\n");
-    println!(
-        "z of the mean, and variance over the exact one with its standard error, from {count} random draws each.\n"
-    );
-    println!("| N | p | paper: z | paper: variance | ours: z | ours: variance |");
-    println!("| --: | --: | --: | --: | --: | --: |");
+fn draws(document: &mut Document, paper: &Variant, ours: &Variant, settings: &Settings) {
+    let count = settings.pick(10_000_000, 100_000u32);
+    document.heading(2, "Random draws");
+    document.paragraph(format!(
+        "z of the mean, and variance over the exact one with its standard error, from {count} random draws each."
+    ));
+    let mut table = Table::new(0, "N | p | paper: z | paper: variance | ours: z | ours: variance");
     let places = [
         (0.3f32, 0.5f32),
         (1.5, 0.7),
@@ -270,7 +197,7 @@ fn draws(paper: &Variant, ours: &Variant) {
     for (item, (n, p)) in places.into_iter().enumerate() {
         let q = 1.0 - p;
         let exact = ExactBinomial::of_f32(n, p, q);
-        let mut row = format!("| {n} | {p:e} |");
+        let mut row = format!("{n} | {p:e}");
         for variant in [paper, ours] {
             let mut rng = ItemRng::new(31, 2, item as u32);
             let (mut shift, mut square, mut fourth) = (0.0, 0.0, 0.0);
@@ -285,10 +212,11 @@ fn draws(paper: &Variant, ours: &Variant) {
             let z = mean / (exact.variance() / c).sqrt();
             let ratio = (second - mean * mean) / exact.variance();
             let error = ((fourth - second * second).max(0.0) / c).sqrt() / exact.variance();
-            row += &format!(" {z:+.1} | {ratio:.4} ± {error:.4} |");
+            row += &format!(" | {z:+.1} | {ratio:.4} ± {error:.4}");
         }
-        println!("{row}");
+        table.row(row);
     }
+    document.table(&table);
 }
 
 /// The paper's (1 − cp)^(N/c) through given elementary functions.
@@ -297,19 +225,20 @@ fn papers_power(math: &impl Elementary, p: f32, n: f32) -> f32 {
     if c * p >= 1.0 { 0.0 } else { math.exp(n / c * math.log(1.0 - c * p)) }
 }
 
-fn powers() {
-    println!("\n## Powers\n");
-    println!(
+fn powers(document: &mut Document, settings: &Settings) {
+    document.heading(2, "Powers");
+    document.paragraph(
         "Worst |error| of (1 − p)^N in f32 over N from 1 to 1e16 and p from 1e-16 to 1, against f64. Least exact WGSL: log, exp \
          and division off by all that WGSL allows, in the worst combination of directions. p^N is the same with p and q \
-         exchanged, and is among the places of the last row.\n"
+         exchanged, and is among the places of the last row.",
     );
+    let step = settings.pick(1, 20);
     let mut places = Vec::new();
-    for i in 0..=800 {
+    for i in (0..=800).step_by(step) {
         let small = libm::exp10(-16.0 + f64::from(i) * 0.019_623) as f32;
         for (p, q) in [(small, 1.0 - small), (1.0 - small, small)] {
             let log = if p <= 0.5 { -libm::log1p(f64::from(-p)) } else { -libm::log(f64::from(q)) };
-            for j in 0..=480 {
+            for j in (0..=480).step_by(step) {
                 let n = (libm::exp10(-3.0 + f64::from(j) / 96.0) / log) as f32;
                 if (1.0..=1e16).contains(&n) {
                     places.push((p, q, n, libm::exp(-f64::from(n) * log)));
@@ -324,17 +253,57 @@ fn powers() {
     let least = |power: &dyn Fn(&LeastExact, f32, f32, f32) -> f32, all: bool| {
         LeastExact::all().iter().map(|math| worst(&|p, q, n| power(math, p, q, n), all)).fold(0.0, f64::max)
     };
-    println!("| form | this processor | least exact WGSL |\n| --- | --: | --: |");
+    let mut table = Table::new(1, "form | this processor | least exact WGSL");
     let naive = |math: &dyn Fn(f32) -> f32, p: f32, n: f32| math(1.0 - p).powf(n);
-    println!("| pow(1 − p, N), p ≤ ½ | {:.1e} | |", worst(&|p, _, n| naive(&|x| x, p, n), false));
-    println!(
-        "| the paper's, p ≤ ½ | {:.1e} | {:.1e} |",
+    table.row(format!("pow(1 − p, N), p ≤ ½ | {:.1e} | ", worst(&|p, _, n| naive(&|x| x, p, n), false)));
+    table.row(format!(
+        "the paper's, p ≤ ½ | {:.1e} | {:.1e}",
         worst(&|p, _, n| papers_power(&Native, p, n), false),
         least(&|math, p, _, n| papers_power(math, p, n), false)
-    );
-    println!(
-        "| ours, all p | {:.1e} | {:.1e} |",
+    ));
+    table.row(format!(
+        "ours, all p | {:.1e} | {:.1e}",
         worst(&|p, q, n| pow1m_with(&Native, p, q, n), true),
         least(&|math, p, q, n| pow1m_with(math, p, q, n), true)
-    );
+    ));
+    document.table(&table);
+}
+
+/// Mean, variance and shape of four draws by the expected count, at N = 10⁴, with so many points a decade.
+fn figure(all: &[Variant], points: u32) -> Figure {
+    const N: f32 = 1e4;
+    const DECADES: u32 = 4;
+    let shown = [
+        (0, "paper", Colour::Vermilion),
+        (3, "moved mean", Colour::Purple),
+        (4, "two gates a side", Colour::Green),
+        (1, "ours", Colour::Blue),
+    ];
+    let panel = |title: &str, range, y: &str| Panel {
+        title: title.to_owned(),
+        x: Axis::logarithmic(y, (0.01, 100.0)),
+        y: Axis::linear("", range, 4),
+        series: Vec::new(),
+    };
+    let mut panels = [
+        panel("E[n] / Np", (0.95, 1.35), ""),
+        panel("variance / Npq", (0.5, 1.5), ""),
+        panel("Wasserstein distance / σ", (0.0, 0.5), "expected count Np, N = 10⁴"),
+    ];
+    for (index, name, colour) in shown {
+        let mut curves = [const { Vec::new() }; 3];
+        for i in 0..=DECADES * points {
+            let expected = 10f64.powf(-2.0 + f64::from(i) / f64::from(points));
+            let p = (expected / f64::from(N)) as f32;
+            let (found, _) = measure_draw(&all[index], N, p, 1.0 - p);
+            let values = [1.0 + found.relative_mean_error, 1.0 + found.variance_error, found.wasserstein];
+            for (curve, value) in curves.iter_mut().zip(values) {
+                curve.push((expected, value));
+            }
+        }
+        for (panel, curve) in panels.iter_mut().zip(curves) {
+            panel.series.push(Series::line(name, colour, curve));
+        }
+    }
+    Figure { title: String::new(), panels: panels.into(), columns: 1, panel_size: (640, 190) }
 }
