@@ -3,6 +3,7 @@
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::ops::Range;
 
 /// Plotters places everything on whole pixels, so a plot is drawn so many times as large as it is shown.
@@ -51,16 +52,22 @@ pub struct Axis {
 impl Axis {
     /// An axis in equal steps, with `steps` + 1 ticks.
     pub fn linear(title: &str, (low, high): (f64, f64), steps: u32) -> Axis {
-        let value = |k| low + (high - low) * f64::from(k) / f64::from(steps);
-        let digits = if (high - low) / f64::from(steps) < 0.1 { 3 } else { 2 };
+        let step = (high - low) / f64::from(steps);
+        let value = |k| low + step * f64::from(k);
+        let whole = |value: f64| (value - value.round()).abs() < 1e-6;
+        let exact = |digits: &i32| whole(low * 10f64.powi(*digits)) && whole(step * 10f64.powi(*digits));
+        let digits = (0..4).find(exact).unwrap_or(3) as usize;
         let ticks = (0..=steps).map(|k| (value(k), format!("{:.digits$}", value(k)))).collect();
         Axis { title: title.to_owned(), logarithmic: false, range: (low, high), ticks }
     }
 
-    /// An axis in equal factors. Ticks are powers of ten within it.
+    /// An axis in equal factors. Ticks are powers of ten within it, and twice and five times those where there are few.
     pub fn logarithmic(title: &str, (low, high): (f64, f64)) -> Axis {
-        let powers = (low.log10() - 1e-9).ceil() as i32..=(high.log10() + 1e-9).floor() as i32;
-        let ticks = powers.map(|power| (10f64.powi(power), power_of_ten(power))).collect();
+        let factors: &[f64] = if high / low <= 200.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+        let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
+        let values = powers.flat_map(|power| factors.iter().map(move |factor| factor * 10f64.powi(power)));
+        let inside = low * (1.0 - 1e-9)..=high * (1.0 + 1e-9);
+        let ticks = values.filter(|value| inside.contains(value)).map(|value| (value, number(value))).collect();
         Axis { title: title.to_owned(), logarithmic: true, range: (low, high), ticks }
     }
 
@@ -100,8 +107,14 @@ impl Axis {
     }
 }
 
-fn power_of_ten(power: i32) -> String {
-    if (-4..=5).contains(&power) { 10f64.powi(power).to_string() } else { format!("1e{power}") }
+/// One, two or five times a power of ten.
+fn number(value: f64) -> String {
+    if (0.9e-4..1e6).contains(&value) {
+        let digits = (-value.log10() + 1e-9).ceil().max(0.0) as usize;
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.0e}")
+    }
 }
 
 /// Colours that people tell apart who see red and green as one (Okabe and Ito).
@@ -165,6 +178,11 @@ impl Series {
         Series { name: name.to_owned(), colour, points, line: true, dots: Dots::None }
     }
 
+    /// The same line with a filled dot at every point.
+    pub fn marked(self) -> Series {
+        Series { dots: Dots::Filled, ..self }
+    }
+
     /// Filled dots.
     pub fn dots(name: &str, colour: Colour, points: Vec<(f64, f64)>) -> Series {
         Series { line: false, dots: Dots::Filled, ..Series::line(name, colour, points) }
@@ -200,12 +218,15 @@ impl Figure {
         self.columns as u32 * self.panel_size.0
     }
 
-    /// Names of all series, each once, in rows as wide as the figure.
+    /// Names of all series that have points, each once, in rows as wide as the figure.
     fn legend(&self) -> Vec<Entry<'_>> {
         let mut entries: Vec<Entry<'_>> = Vec::new();
         let (mut row, mut left) = (0, 8);
         for series in self.panels.iter().flat_map(|panel| &panel.series) {
-            if series.name.is_empty() || entries.iter().any(|entry| entry.series.name == series.name) {
+            if series.name.is_empty()
+                || series.points.is_empty()
+                || entries.iter().any(|entry| entry.series.name == series.name)
+            {
                 continue;
             }
             let wide = SAMPLE + 6 + text_width(&series.name) + 14;
@@ -268,17 +289,20 @@ type Area<'a, C> = DrawingArea<SVGBackend<'a>, C>;
 impl Panel {
     fn draw(&self, area: &Area<'_, plotters::coord::Shift>) -> Result<(), Box<dyn std::error::Error>> {
         let text = |size: u32| (FONT, size * FINE).into_font();
-        let mut builder = ChartBuilder::on(area);
+        let (title, area) = area.split_vertically(if self.title.is_empty() { 0 } else { (TEXT + 12) * FINE });
+        if !self.title.is_empty() {
+            let style = text(TEXT + 1).style(FontStyle::Bold).into_text_style(&title);
+            let at = ((title.dim_in_pixel().0 / 2) as i32, (8 * FINE) as i32);
+            title.draw_text(&self.title, &style.pos(Pos::new(HPos::Center, VPos::Top)), at)?;
+        }
+        let mut builder = ChartBuilder::on(&area);
         let widest = self.y.ticks.iter().map(|(_, label)| text_width(label)).max().unwrap_or(0);
-        let named = |title: &str| if title.is_empty() { 0 } else { TEXT + 9 };
+        let named = |title: &str| if title.is_empty() { 0 } else { TEXT + 6 };
         builder
             .margin(8 * FINE)
             .margin_right(16 * FINE)
-            .x_label_area_size((TEXT + 9 + named(&self.x.title)) * FINE)
+            .x_label_area_size((TEXT + 7 + named(&self.x.title)) * FINE)
             .y_label_area_size((widest + 10 + named(&self.y.title)) * FINE);
-        if !self.title.is_empty() {
-            builder.caption(&self.title, text(TEXT + 1).style(FontStyle::Bold));
-        }
         let mut chart = builder.build_cartesian_2d(self.x.coordinate(), self.y.coordinate())?;
         chart
             .configure_mesh()
@@ -295,7 +319,7 @@ impl Panel {
             .draw()?;
         for series in &self.series {
             let place = |&(x, y): &(f64, f64)| chart.backend_coord(&(self.x.place(x), self.y.place(y)));
-            series.draw(area, series.points.iter().map(place).collect(), 0)?;
+            series.draw(&area, series.points.iter().map(place).collect(), 0)?;
         }
         Ok(())
     }
@@ -372,6 +396,31 @@ mod tests {
     fn what_has_no_logarithm_lies_at_the_beginning() {
         let axis = Axis::powers_around("", [0.02, 0.0, 3.0].into_iter());
         assert_eq!((axis.place(0.0), axis.place(f64::NAN), axis.place(100.0)), (-2.0, -2.0, 1.0));
-        assert_eq!(axis.ticks.iter().map(|tick| tick.1.as_str()).collect::<Vec<_>>(), ["0.01", "0.1", "1", "10"]);
+        assert_eq!(labels(&axis), ["0.01", "0.1", "1", "10"]);
+    }
+
+    fn labels(axis: &Axis) -> Vec<&str> {
+        axis.ticks.iter().map(|tick| tick.1.as_str()).collect()
+    }
+
+    #[test]
+    fn ticks_say_what_they_stand_at() {
+        assert_eq!(labels(&Axis::linear("", (0.0, 0.5), 4)), ["0.000", "0.125", "0.250", "0.375", "0.500"]);
+        assert_eq!(labels(&Axis::linear("", (0.95, 1.35), 4)), ["0.95", "1.05", "1.15", "1.25", "1.35"]);
+        assert_eq!(labels(&Axis::logarithmic("", (0.05, 2.0))), ["0.05", "0.1", "0.2", "0.5", "1", "2"]);
+        assert_eq!(labels(&Axis::logarithmic("", (1e-6, 1e-3))), ["1e-6", "1e-5", "0.0001", "0.001"]);
+    }
+
+    #[test]
+    fn equal_plots_are_equal_bytes() {
+        let panel = || Panel {
+            title: "<a> & b".to_owned(),
+            x: Axis::linear("x", (0.0, 1.0), 2),
+            y: Axis::linear("y", (0.0, 1.0), 2),
+            series: vec![Series::line("line", Colour::Blue, vec![(0.0, 0.0), (1.0, 2.0)]).marked()],
+        };
+        let svg = Figure::of(panel()).to_svg();
+        assert_eq!(svg, Figure::of(panel()).to_svg());
+        assert!(svg.contains("&lt;a&gt; &amp; b") && svg.starts_with("<svg width=\"640\""), "{svg}");
     }
 }

@@ -64,6 +64,9 @@ pub struct Args {
     pub adapter: Option<String>,
 }
 
+/// The report that measures maps of the user.
+const NDF_MAPS: &str = "ndf-maps";
+
 fn name(text: &str) -> Result<String, String> {
     let names: Vec<&str> = REPORTS.iter().map(|report| report.name).collect();
     match names.contains(&text) {
@@ -74,6 +77,11 @@ fn name(text: &str) -> Result<String, String> {
 
 /// Runs the subcommand.
 pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
+    if !args.maps.is_empty() && !args.methods.is_empty() && !args.methods.iter().any(|name| name == NDF_MAPS) {
+        return Err(Failure::usage(format!(
+            "--maps: is for the report of {NDF_MAPS}; name it too, or leave --maps out"
+        )));
+    }
     let settings = settings(args, terminal);
     if args.list {
         return output::print(&list(&settings));

@@ -53,14 +53,14 @@ pub fn measure(settings: &Settings) -> Result<Document, Failure> {
     let footprints = settings.footprints(64, 1);
     let edge = settings.pick(SURFACE, 512);
     let mut tables = Vec::new();
-    let mut panels = Vec::new();
+    let mut all = Vec::new();
     for target in [Target::Patches { width: edge, height: edge }, Target::Unbounded { colours: 4, variants: 2 }] {
         let mut table = Table::new(2, "sample | surface | bytes | σ | on seams | inside | ratio | lobes");
         for (name, file) in maps(settings) {
             settings.terminal.say(&format!("surface: {name}, {}", title(target)));
             let sample = load(settings, &file)?;
             let curves = rows(name, &sample, target, footprints, &mut table)?;
-            panels.push(panel(&format!("{name}, {}", title(target)), curves));
+            all.push((format!("{name}, {}", title(target)), curves));
         }
         tables.push(table);
     }
@@ -71,12 +71,7 @@ pub fn measure(settings: &Settings) -> Result<Document, Failure> {
          {WIDE} at most where σ > {INSIDE_UNTIL}), and as many inside patches, ±2 σ clear of seams; D of the assembled map, in f64; \
          σ in texels, σ_r = {ROUGHNESS}. Lobes a query, on average, on seams."
     ));
-    let columns = panels.len().min(maps(settings).len());
-    document.plot(
-        "",
-        "E₁ over footprint size",
-        &Figure { title: String::new(), panels, columns, panel_size: (260, 220) },
-    );
+    document.plot("", "E₁ over footprint size", &figure(all));
     for table in &tables {
         document.table(table);
     }
@@ -101,16 +96,22 @@ struct Curves {
     inside: Vec<(f64, f64)>,
 }
 
-fn panel(title: &str, curves: Curves) -> Panel {
-    Panel {
-        title: title.to_owned(),
+/// E₁ over footprint size: a panel for each map, bounded surfaces above, those without end below.
+fn figure(all: Vec<(String, Curves)>) -> Figure {
+    let values = all.iter().flat_map(|(_, curves)| curves.seams.iter().chain(&curves.inside)).map(|point| point.1);
+    let y = Axis::powers_around("E₁", values).unit(" %");
+    let columns = all.len() / 2;
+    let panel = |(title, curves): (String, Curves)| Panel {
+        title,
         x: Axis::logarithmic("σ in texels", (0.5, 32.0)).ticks(&SIGMAS),
-        y: Axis::logarithmic("E₁", (0.1, 100.0)).unit(" %"),
+        y: y.clone(),
         series: vec![
-            Series::line("inside patches", Colour::Grey, curves.inside),
-            Series::line("on seams", Colour::Blue, curves.seams),
+            Series::line("inside patches", Colour::Grey, curves.inside).marked(),
+            Series::line("on seams", Colour::Blue, curves.seams).marked(),
         ],
-    }
+    };
+    let panels = all.into_iter().map(panel).collect();
+    Figure { title: String::new(), panels, columns, panel_size: (260, 220) }
 }
 
 fn baked(sample: &NormalMap, target: Target) -> Result<Surface, Failure> {

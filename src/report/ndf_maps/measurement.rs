@@ -1,5 +1,6 @@
 //! What a report measures of one example.
 
+use crate::report::settings::Settings;
 use glam::{DVec2, Vec2};
 use glint_bake_core::error::Result;
 use glint_bake_core::footprint::Footprint;
@@ -71,7 +72,7 @@ const DIAL: [EvalSettings; 4] = [
 ];
 
 /// Measures an example with `count` footprints a size.
-pub fn example(map: &NormalMap, count: u32) -> Result<Example> {
+pub fn example(map: &NormalMap, count: u32, scale: &Settings) -> Result<Example> {
     let maps = bake::bake(map, &NdfMapsOptions::default(), &Silent)?;
     let one = |degrees: f64| TransformRanges { rotate_degrees: (degrees, degrees), ..TransformRanges::default() };
     let placements = [
@@ -96,7 +97,7 @@ pub fn example(map: &NormalMap, count: u32) -> Result<Example> {
             }
         }
     }
-    Ok(Example { settings: settings(map)?, sizes, dial })
+    Ok(Example { settings: settings(map, scale)?, sizes, dial })
 }
 
 fn dial_setting(map: &NormalMap, reference: &SurfaceReference<'_>, settings: EvalSettings, count: u32) -> Dial {
@@ -156,10 +157,11 @@ fn cost(material: &Material, footprints: &[Footprint], settings: EvalSettings) -
     least
 }
 
-/// Bakes with every storage and several errors asked, at the roughnesses of the accuracy targets.
-fn settings(map: &NormalMap) -> Result<Vec<Setting>> {
+/// Bakes with every storage and several errors asked, at the roughnesses of the accuracy targets; at the largest alone for
+/// a quick look.
+fn settings(map: &NormalMap, scale: &Settings) -> Result<Vec<Setting>> {
     let mut all = Vec::new();
-    for roughness in [0.02, 0.01, 0.005] {
+    for roughness in [0.02, 0.01, 0.005].into_iter().take(scale.pick(3, 1)) {
         let first = all.len();
         let own = [0.1, 0.05, 0.02, 0.01, 0.005].map(|error| (DensityStorage::SqrtU8, error));
         let others = [(DensityStorage::F16, 0.01), (DensityStorage::F16, 0.003), (DensityStorage::PaperF32, 0.01)];

@@ -35,7 +35,7 @@ pub fn measure(settings: &Settings) -> Result<Document, Failure> {
     for (path, map) in load(settings)? {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         settings.terminal.say(&format!("ndf-maps: {name}"));
-        let measured = measurement::example(&map, footprints).map_err(|e| Failure::bake(&path, &e))?;
+        let measured = measurement::example(&map, footprints, settings).map_err(|e| Failure::bake(&path, &e))?;
         document.heading(2, &format!("{name}, {} × {}", map.width, map.height));
         document.plot(&name, "bytes against error", &figure(&name, &measured.settings));
         tables(&mut document, &measured);
@@ -146,8 +146,7 @@ fn figure(name: &str, settings: &[Setting]) -> Figure {
             points.sort_by(|a, b| a.0.total_cmp(&b.0));
             points
         };
-        series.push(Series::line("", colour, of(true)));
-        series.push(Series::dots(&format!("σ_r {roughness}"), colour, of(true)));
+        series.push(Series::line(&format!("σ_r {roughness}"), colour, of(true)).marked());
         series.push(Series::circles("", colour, of(false)));
     }
     let points = || settings.iter().map(point);
