@@ -15,7 +15,7 @@ use glint_bake_core::environment::options::LevelCount;
 use glint_bake_core::environment::reference_glints::{FacetMoments, FacetSurface};
 use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, bake};
 use glint_bake_core::progress::Silent;
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 use glint_formats::environment::LevelChoice;
 use rayon::prelude::*;
 
@@ -33,7 +33,6 @@ const MAX_DEGREES: f64 = 60.0;
 const FACE_SIZE: u32 = 128;
 /// Draws, and patches of placed facets.
 const PATCHES: u32 = 2000;
-const PURPOSE: u32 = 60;
 
 /// Files of the environments that are measured.
 fn files(settings: &Settings) -> Vec<String> {
@@ -220,7 +219,7 @@ fn placed_lot(
     let mut values: Vec<f64> = (0..patches)
         .into_par_iter()
         .map(|patch| {
-            let extra = ItemRng::new(seed, PURPOSE, patch).unit() < facets.fract();
+            let extra = ItemRng::new(seed, Purpose::GlintReport, patch).unit() < facets.fract();
             let count = facets as u32 + u32::from(extra);
             if count == 0 {
                 0.0
@@ -237,7 +236,7 @@ fn placed_lot(
 fn drawn_lot(environment: &Environment, surface: &GlintSurface, patches: u32, smooth: f64) -> Vec<f64> {
     let mut values: Vec<f64> = (0..patches)
         .map(|draw| {
-            let mut rng = ItemRng::new(1, PURPOSE, draw);
+            let mut rng = ItemRng::new(1, Purpose::GlintReport, draw);
             let words = std::array::from_fn(|_| unit_from_bits(rng.bits()));
             brightness(environment_glints(environment, surface, &words)) / smooth
         })
@@ -264,7 +263,7 @@ fn exact_moments(image: &EnvironmentImage, alpha: f64, max_degrees: f64, surface
 
 /// Seeded surface number `k` of so many.
 fn surface(k: usize, alpha: f64, max_degrees: f64, surfaces: u32) -> FacetSurface {
-    let mut rng = ItemRng::new(0, PURPOSE, k as u32);
+    let mut rng = ItemRng::new(0, Purpose::GlintReport, k as u32);
     let height = 2.0 * rng.unit() - 1.0;
     let turn = std::f64::consts::TAU * rng.unit();
     let level = (1.0 - height * height).sqrt();

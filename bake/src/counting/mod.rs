@@ -8,7 +8,7 @@
 //! ([`pow1m`](mod@pow1m)). [`reference`](mod@reference) says the same from the definitions in f64, and [`quality`] measures one
 //! by the other.
 //!
-//! What deviates from the paper, and why, stands on top of each file and in `docs/METHODS.md`. The main points:
+//! What deviates from the paper, and why, stands on top of each file and in `docs/methods/counting.md`. The main points:
 //! - counts are whole numbers, their mean is Np, and their variance that of the binomial distribution;
 //! - one random word a binomial draw instead of two numbers, and counts change monotonously with p for a fixed word;
 //! - counts above 2²⁴ come with what rounding to f32 takes from them ([`Count`]): their variance holds to N = 1e16;
@@ -23,6 +23,8 @@ pub mod pow1m;
 pub mod quality;
 pub mod reference;
 pub mod wgsl;
+
+crate::shader::shaders!("counting": "eval");
 
 pub use binomial::{binomial, whole_binomial};
 pub use count::Count;
