@@ -6,7 +6,7 @@ use super::table::Table;
 use crate::exit::Failure;
 use crate::plot::{Axis, Colour, Figure, Panel, Series};
 use glam::DVec3;
-use glint_bake_core::counting::normal::unit_from_bits;
+use glint_bake_core::counting::eval::unit_from_bits;
 use glint_bake_core::environment::glints::{
     GlintChances, GlintSurface, environment_glints, glint_chances, glint_relative_variance,
 };

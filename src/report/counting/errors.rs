@@ -1,7 +1,7 @@
 //! Errors of a draw over the grid of places that the report goes through.
 
 use super::variants::Variant;
-use glint_bake_core::counting::binomial::FEW;
+use glint_bake_core::counting::eval::FEW;
 use glint_bake_core::counting::quality::{CountingQuality, SecondWord, compare, outcomes};
 use glint_bake_core::counting::reference::ExactBinomial;
 

@@ -13,9 +13,9 @@ use super::table::Table;
 use crate::exit::Failure;
 use crate::plot::{Axis, Colour, Figure, Panel, Series};
 use errors::{TRIALS, WORST_COLUMNS, Worst, chances, measure_draw};
-use glint_bake_core::counting::pow1m::{Elementary, Native, pow1m_with};
+use glint_bake_core::counting::eval::count_value;
+use glint_bake_core::counting::pow1m::{Elementary, LeastExact, Native, pow1m_with};
 use glint_bake_core::counting::reference::ExactBinomial;
-use glint_bake_core::counting::wgsl::LeastExact;
 use glint_bake_core::rng::{ItemRng, Purpose};
 use std::time::Instant;
 use variants::{Draw, Variant, variants};
@@ -87,7 +87,7 @@ fn nanoseconds(all: &[Variant], n: f32, p: f32, q: f32) -> Vec<f64> {
         for word in &words {
             let (n, p, q) = std::hint::black_box((n, p, q));
             let [hits, misses] = draw(n, p, q, *word);
-            sum += hits.value() - misses.value();
+            sum += count_value(hits) - count_value(misses);
         }
         std::hint::black_box(sum);
         start.elapsed().as_secs_f64() * 1e9 / words.len() as f64

@@ -3,8 +3,8 @@
 
 use crate::report::document::Document;
 use crate::report::table::Table;
-use glint_bake_core::counting::normal::unit_from_bits;
-use glint_bake_core::counting::{Count, MAX_LEVELS, multinomial, paper};
+use glint_bake_core::counting::eval::{count_value, unit_from_bits};
+use glint_bake_core::counting::{MAX_LEVELS, multinomial, paper};
 use glint_bake_core::rng::{ItemRng, Purpose};
 use std::time::Instant;
 
@@ -52,7 +52,7 @@ pub fn table(document: &mut Document, draws: u32) {
                 for _ in 0..draws {
                     let counts = if ours {
                         let words = std::array::from_fn(|_| unit_from_bits(rng.bits()));
-                        multinomial(n, &weight, count, &words).map(Count::value)
+                        multinomial(n, &weight, count, &words).map(count_value)
                     } else {
                         let bits: [u32; 2 * MAX_LEVELS] = std::array::from_fn(|_| rng.bits());
                         paper::multinomial(n, &weight, count, &bits)
