@@ -11,7 +11,7 @@ use glint_bake_core::environment::options::LevelCount;
 use glint_bake_core::environment::reference_glints::{FacetMoments, FacetSurface};
 use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, bake};
 use glint_bake_core::progress::Silent;
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 use glint_formats::environment::LevelChoice;
 use rayon::prelude::*;
 use std::path::Path;
@@ -29,7 +29,6 @@ const MAX_DEGREES: f64 = 60.0;
 const FACE_SIZE: u32 = 128;
 /// Draws, and patches of placed facets.
 const PATCHES: u32 = 2000;
-const PURPOSE: u32 = 60;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -167,7 +166,7 @@ fn placed_lot(surface: &FacetSurface, image: &EnvironmentImage, facets: f64, see
     let mut values: Vec<f64> = (0..PATCHES)
         .into_par_iter()
         .map(|patch| {
-            let extra = ItemRng::new(seed, PURPOSE, patch).unit() < facets.fract();
+            let extra = ItemRng::new(seed, Purpose::GlintReport, patch).unit() < facets.fract();
             let count = facets as u32 + u32::from(extra);
             if count == 0 {
                 0.0
@@ -184,7 +183,7 @@ fn placed_lot(surface: &FacetSurface, image: &EnvironmentImage, facets: f64, see
 fn drawn_lot(environment: &Environment, surface: &GlintSurface, smooth: f64) -> Vec<f64> {
     let mut values: Vec<f64> = (0..PATCHES)
         .map(|draw| {
-            let mut rng = ItemRng::new(1, PURPOSE, draw);
+            let mut rng = ItemRng::new(1, Purpose::GlintReport, draw);
             let words = std::array::from_fn(|_| unit_from_bits(rng.bits()));
             brightness(environment_glints(environment, surface, &words)) / smooth
         })
@@ -210,7 +209,7 @@ fn exact_moments(image: &EnvironmentImage, alpha: f64, max_degrees: f64) -> Vec<
 
 /// Seeded surface number `k`.
 fn surface(k: usize, alpha: f64, max_degrees: f64) -> FacetSurface {
-    let mut rng = ItemRng::new(0, PURPOSE, k as u32);
+    let mut rng = ItemRng::new(0, Purpose::GlintReport, k as u32);
     let height = 2.0 * rng.unit() - 1.0;
     let turn = std::f64::consts::TAU * rng.unit();
     let level = (1.0 - height * height).sqrt();

@@ -11,7 +11,7 @@ use glint_bake_core::surface::bake::ALIGNMENT;
 use glint_bake_core::surface::quality::{Exact, Measured, seam_footprints};
 use glint_bake_core::surface::{Surface, SurfaceSettings, bake};
 use glint_bake_core::synthesis::{SynthesisOptions, Target};
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 use std::path::Path;
 
 /// The maps; a square of 256² texels is cut from their upper left corner.

@@ -12,7 +12,7 @@ use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::synthesis::measure::{feature_ends, repetition, whole_share};
 use glint_bake_core::synthesis::{Synthesis, SynthesisOptions, Target, assemble, bake};
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 use std::path::Path;
 
 /// Edge of the overview in pixels.

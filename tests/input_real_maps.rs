@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 use glint_bake::input::{InputError, InputOptions, LoadedMap, load_normal_map};
 use glint_bake_core::normal_map::{GreenAxis, NormalMap, NormalOptions, NormalReport, RawNormals};
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 
 /// Files that carry an sRGB tag and so need the override.
 const TAGGED_SRGB: [&str; 2] = ["ground037_ambientcg_rgba_roughness.png", "leather_008_3dtextures_16bit.png"];

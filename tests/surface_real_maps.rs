@@ -8,7 +8,7 @@ use glint_bake_core::progress::Silent;
 use glint_bake_core::surface::quality::{Exact, Measured, seam_footprints};
 use glint_bake_core::surface::{SurfaceSettings, bake};
 use glint_bake_core::synthesis::SynthesisOptions;
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 use real_maps::{data, load};
 
 const MAPS: [&str; 4] = [

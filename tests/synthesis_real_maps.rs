@@ -7,7 +7,7 @@ use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::synthesis::measure::repetition;
 use glint_bake_core::synthesis::{SynthesisOptions, Target, assemble, bake};
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 use real_maps::{data, load};
 
 /// A map, and how much rougher its seams may be than its neighbours. Scratches are lines that seams cut.

@@ -5,7 +5,7 @@ use glint_bake_core::counting::normal::{Uniform, normal_upper_quantile, unit_fro
 use glint_bake_core::counting::quality::{CountingQuality, SecondWord, compare, outcomes};
 use glint_bake_core::counting::reference::ExactBinomial;
 use glint_bake_core::counting::{Count, binomial, paper, whole_binomial};
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 
 const TRIALS: [f32; 24] = [
     0.01, 0.3, 0.9, 1.0, 1.5, 2.0, 2.5, 3.0, 5.0, 8.0, 8.5, 11.0, 13.0, 16.0, 64.0, 300.0, 1e3, 1e4, 1e6, 1e8, 1e10,
@@ -105,7 +105,7 @@ fn random_draws_agree() {
     {
         let q = 1.0 - p;
         let exact = ExactBinomial::of_f32(n, p, q);
-        let mut rng = ItemRng::new(17, 1, item as u32);
+        let mut rng = ItemRng::new(17, Purpose::Test(1), item as u32);
         let (mut shift, mut square, mut fourth) = (0.0, 0.0, 0.0);
         for _ in 0..draws {
             let [hits, _] = binomial(n, p, q, [rng.bits(), rng.bits()]);
@@ -125,7 +125,7 @@ fn random_draws_agree() {
 
 #[test]
 fn hits_and_misses_add_up() {
-    let mut rng = ItemRng::new(17, 2, 0);
+    let mut rng = ItemRng::new(17, Purpose::Test(2), 0);
     for n in TRIALS {
         for (p, q) in chances(n) {
             for _ in 0..50 {
@@ -146,7 +146,7 @@ fn hits_and_misses_add_up() {
 
 #[test]
 fn both_ends_are_alike() {
-    let mut rng = ItemRng::new(17, 3, 0);
+    let mut rng = ItemRng::new(17, Purpose::Test(3), 0);
     for n in TRIALS {
         for (p, q) in chances(n).into_iter().filter(|(p, q)| p != q) {
             for _ in 0..50 {
@@ -171,7 +171,7 @@ fn both_ends_are_alike() {
 /// two forms may disagree by one.
 #[test]
 fn hits_grow_with_the_chance() {
-    let mut rng = ItemRng::new(17, 4, 0);
+    let mut rng = ItemRng::new(17, Purpose::Test(4), 0);
     let (mut falls, mut steps) = (0, 0);
     for n in [1.0f32, 2.0, 5.0, 9.0, 12.0, 13.0, 40.0, 300.0] {
         for _ in 0..200 {

@@ -4,7 +4,7 @@ use glint_bake_core::counting::binomial::whole_count;
 use glint_bake_core::counting::multinomial::tree_leaves;
 use glint_bake_core::counting::normal::unit_from_bits;
 use glint_bake_core::counting::{Count, MAX_LEVELS, multinomial};
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 
 fn words(rng: &mut ItemRng) -> [f32; MAX_LEVELS] {
     std::array::from_fn(|_| unit_from_bits(rng.bits()))
@@ -21,7 +21,7 @@ fn weights(levels: usize) -> [f32; MAX_LEVELS] {
 
 #[test]
 fn counts_are_whole_and_add_up() {
-    let mut rng = ItemRng::new(23, 1, 0);
+    let mut rng = ItemRng::new(23, Purpose::Test(1), 0);
     for levels in 1..=MAX_LEVELS {
         let all = weights(levels);
         for n in [0.0f32, 0.02, 0.9, 1.0, 1.5, 2.0, 7.3, 20.0, 1e3, 12345.6, 16_777_216.0, 1e10, 1e16] {
@@ -63,7 +63,7 @@ fn means_and_covariances_are_the_multinomials() {
         let total: f64 = all.iter().map(|w| f64::from(*w)).sum();
         let chance: Vec<f64> = all.iter().map(|w| f64::from(*w) / total).collect();
         let (trials, fraction) = (f64::from(n), f64::from(n.fract()));
-        let mut rng = ItemRng::new(23, 2, item as u32);
+        let mut rng = ItemRng::new(23, Purpose::Test(2), item as u32);
         let mut shift = [0.0; MAX_LEVELS];
         let mut product = [[0.0; MAX_LEVELS]; MAX_LEVELS];
         let mut square = [[0.0; MAX_LEVELS]; MAX_LEVELS];
@@ -115,7 +115,7 @@ fn counts_to_1e16_vary_as_they_should() {
         // Branches of ½ and ½ all down the tree, but the last: 2⁻²⁰ and the rest.
         let mut all = [0.125; MAX_LEVELS];
         (all[6], all[7]) = (0.25 * 2f32.powi(-20), 0.25 - 0.25 * 2f32.powi(-20));
-        let mut rng = ItemRng::new(23, 7, item as u32);
+        let mut rng = ItemRng::new(23, Purpose::Test(7), item as u32);
         let mut moments = [[0.0; 3]; 8];
         for _ in 0..draws {
             let counts = multinomial(n, &all, 8, &words(&mut rng)).map(f64::from);
@@ -140,7 +140,7 @@ fn few_facets_follow_the_multinomial_itself() {
     let all = weights(5).map(|w| w.sqrt());
     let total: f64 = all.iter().map(|w| f64::from(*w)).sum();
     let draws = 200_000u32;
-    let mut rng = ItemRng::new(23, 3, 0);
+    let mut rng = ItemRng::new(23, Purpose::Test(3), 0);
     let mut seen = std::collections::BTreeMap::<[u32; 5], u32>::new();
     for _ in 0..draws {
         let counts = multinomial(3.0, &all, 5, &words(&mut rng)).map(Count::value);
@@ -175,7 +175,7 @@ fn a_rare_level_keeps_its_mean_anywhere() {
         let mut all = [0.0; MAX_LEVELS];
         all[..8].fill(0.125);
         all[place] = 1e-7;
-        let mut rng = ItemRng::new(23, 4, place as u32);
+        let mut rng = ItemRng::new(23, Purpose::Test(4), place as u32);
         let (n, draws) = (1e4f32, 200_000);
         let total: f64 = all.iter().map(|w| f64::from(*w)).sum();
         let expected = f64::from(n) * 1e-7 / total * f64::from(draws);
@@ -189,7 +189,7 @@ fn a_rare_level_keeps_its_mean_anywhere() {
 
 #[test]
 fn degenerate_weights() {
-    let mut rng = ItemRng::new(23, 5, 0);
+    let mut rng = ItemRng::new(23, Purpose::Test(5), 0);
     for _ in 0..1000 {
         let drawn = words(&mut rng);
         for levels in [1, 2, 3, 8, 16] {
@@ -214,7 +214,7 @@ fn degenerate_weights() {
 /// Words that the documentation does not name are not read.
 #[test]
 fn only_the_words_of_the_tree_are_read() {
-    let mut rng = ItemRng::new(23, 6, 0);
+    let mut rng = ItemRng::new(23, Purpose::Test(6), 0);
     for levels in 1..=MAX_LEVELS {
         let leaves = tree_leaves(levels);
         for _ in 0..200 {

@@ -4,12 +4,12 @@ use glam::Vec2;
 use glint_bake_core::environment::cells::{
     corner_bits, footprint_area, footprint_facets, surface_cells, surface_lod, surface_word, surface_words,
 };
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 
 /// A word is 1 − ∏ (1 − w x), x the least h / w: all of its digits where it is small, seven places where it is not.
 #[test]
 fn words_are_the_race_of_the_corners_to_their_digits() {
-    let mut rng = ItemRng::new(5, 78, 0);
+    let mut rng = ItemRng::new(5, Purpose::Test(78), 0);
     let mut rare = 0;
     for seed in 0..200_000 {
         let position = Vec2::new(rng.unit() as f32, rng.unit() as f32) * 40.0;
@@ -80,7 +80,7 @@ fn the_words_of_a_place_do_not_depend_on_each_other() {
 #[test]
 fn words_change_gradually_with_place_and_footprint() {
     const STEP: f32 = 1.0 / 1024.0;
-    let mut rng = ItemRng::new(5, 77, 0);
+    let mut rng = ItemRng::new(5, Purpose::Test(77), 0);
     let (mut moved, mut zoomed, mut jumps) = (0.0, 0.0, 0);
     const PLACES: u32 = 20_000;
     for seed in 0..PLACES {

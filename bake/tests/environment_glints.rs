@@ -10,7 +10,7 @@ use glint_bake_core::environment::options::LevelCount;
 use glint_bake_core::environment::reference_glints::FacetSurface;
 use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, albedo, bake};
 use glint_bake_core::progress::Silent;
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 use glint_formats::environment::MAX_LEVELS;
 use std::f64::consts::PI;
 
@@ -66,7 +66,7 @@ fn drawn_from(surface: &FacetSurface, facets: f32) -> GlintSurface {
 }
 
 fn words(seed: u64, draw: u32) -> [f32; MAX_LEVELS] {
-    let mut rng = ItemRng::new(seed, 99, draw);
+    let mut rng = ItemRng::new(seed, Purpose::Test(99), draw);
     std::array::from_fn(|_| unit_from_bits(rng.bits()))
 }
 

@@ -10,13 +10,13 @@ use glint_bake_core::environment::options::LevelCount;
 use glint_bake_core::environment::reference::{filtered, ggx, second_moments};
 use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, bake};
 use glint_bake_core::progress::Silent;
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 use glint_formats::environment::{Kernel, LevelChoice};
 use std::f64::consts::PI;
 
 /// Random radiance over several decades, with two lamps.
 fn image() -> EnvironmentImage {
-    let mut rng = ItemRng::new(7, 1, 1);
+    let mut rng = ItemRng::new(7, Purpose::Test(1), 1);
     let mut pixels: Vec<[f32; 3]> =
         (0..64 * 32).map(|_| [0.0; 3].map(|_: f64| (-6.0 * rng.unit()).exp() as f32)).collect();
     for x in 8..11 {
@@ -88,7 +88,7 @@ fn the_estimate_of_the_second_moment_is_that_of_the_reference() {
     let mut errors = [0.0; 2];
     let mut count = 0.0;
     for k in 0..40 {
-        let mut rng = ItemRng::new(3, 2, k);
+        let mut rng = ItemRng::new(3, Purpose::Test(2), k);
         let n = direction(2.0 * PI * rng.unit(), 2.0 * rng.unit() - 1.0);
         for alpha in glint_bake_core::environment::levels::ROUGHNESSES {
             let (with_levels, exact) = second_moments(&image, Kernel::Ndf, n, alpha, &levels);
@@ -168,7 +168,7 @@ fn look_ups_are_smooth_across_edges_and_mips() {
     let image = EnvironmentImage::new(64, 32, pixels).unwrap().0;
     let environment = baked(&image, 2, false);
     for k in 0..500 {
-        let mut rng = ItemRng::new(9, 4, k);
+        let mut rng = ItemRng::new(9, Purpose::Test(4), k);
         let d = direction(2.0 * PI * rng.unit(), 2.0 * rng.unit() - 1.0).as_vec3();
         let taps = cube_taps(d, 8);
         assert!((taps.weights.iter().sum::<f32>() - 1.0).abs() < 1e-6);

@@ -11,7 +11,7 @@ use glint_bake_core::ndf_maps::transform::TransformRanges;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::quality::sweep::footprints;
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 
 /// A tiling map with waves of several lengths.
 fn map(width: u32, height: u32) -> NormalMap {

@@ -18,8 +18,8 @@ use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::quality::metrics::{DiskGrid, e1};
 use glint_bake_core::quality::sweep;
+use glint_formats::Wrap;
 use glint_formats::lobes::{Filter, LobeStorage, MAX_LAST_CELLS, Merge};
-use glint_formats::ndf_maps::Wrap;
 
 const ROUGHNESS: f64 = 0.02;
 

@@ -12,8 +12,8 @@ use glint_bake_core::lobes::reference::{GridNdf, Reference};
 use glint_bake_core::lobes::{BakedLobes, bake, quality, sections};
 use glint_bake_core::progress::Silent;
 use glint_bake_core::quality::metrics::DiskGrid;
+use glint_formats::Wrap;
 use glint_formats::lobes::{Filter, LobeStorage, Merge};
-use glint_formats::ndf_maps::Wrap;
 use glint_formats::{Codec, Limits, Pack, PackBuilder, validate};
 use hard_maps::{hard_maps, map};
 

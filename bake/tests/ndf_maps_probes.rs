@@ -11,7 +11,7 @@ use glint_bake_core::ndf_maps::surface::EvalSettings;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::quality::sweep::footprints;
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 
 /// Settings of pictures, at which all tiles are seen.
 const TILES: EvalSettings =

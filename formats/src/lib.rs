@@ -9,33 +9,31 @@
 compile_error!("glint-formats reads little-endian records in place and is not written for big-endian machines");
 
 pub mod area_light;
-mod area_light_check;
+pub mod binding;
+mod bytes;
 pub mod container;
 pub mod dictionary;
-mod dictionary_check;
 pub mod environment;
-mod environment_check;
 mod error;
 pub mod export;
 mod issue;
 pub mod kinds;
 pub mod lobes;
-mod lobes_check;
 pub mod ndf_maps;
-mod ndf_maps_check;
+mod pack;
 pub mod params;
-mod placement_check;
 pub mod provenance;
 mod sections;
-mod surface_check;
 pub mod synthesis;
-mod synthesis_check;
 mod verify;
 pub mod vk_format;
+mod wrap;
 
 pub use container::{
-    Codec, FourCc, Limits, Pack, PackBuilder, Resource, Section, SectionEntry, WriteOutcome, write_atomic,
+    Codec, FourCc, KnownKind, Limits, PackBuilder, Resource, Section, SectionEntry, WriteOutcome, write_atomic,
 };
 pub use error::{FormatError, OpenError};
 pub use issue::{Issue, IssueCode, Severity};
+pub use pack::Pack;
 pub use verify::validate;
+pub use wrap::Wrap;

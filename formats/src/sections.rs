@@ -7,18 +7,19 @@ use crate::{kinds, params};
 use serde::de::DeserializeOwned;
 use std::borrow::Cow;
 
-/// All sections of a pack. A payload that could not be read is `None`; that is reported elsewhere.
+/// All sections of a pack. A payload that could not be read is `None`, which is reported where it was read; checks of contents see
+/// no such section.
 pub(crate) struct Sections<'a> {
     pub entries: &'a [SectionEntry],
     pub index: &'a Index,
     pub payloads: Vec<Option<Cow<'a, [u8]>>>,
 }
 
-/// One section of a kind and version this program reads.
+/// One section of a kind and version this program reads, with a payload that its checksum vouches for.
 #[derive(Clone, Copy)]
 pub(crate) struct Loaded<'a> {
     pub entry: &'a SectionEntry,
-    pub payload: Option<&'a [u8]>,
+    pub payload: &'a [u8],
 }
 
 impl Sections<'_> {
@@ -58,7 +59,8 @@ impl Sections<'_> {
     fn load(&self, i: usize) -> Option<Loaded<'_>> {
         let entry = &self.entries[i];
         let read = kinds::known(entry.kind).is_some_and(|known| known.version == entry.version);
-        read.then(|| Loaded { entry, payload: self.payloads[i].as_deref() })
+        let payload = self.payloads[i].as_deref()?;
+        read.then_some(Loaded { entry, payload })
     }
 }
 
@@ -94,7 +96,7 @@ impl<'a> Loaded<'a> {
         if !self.expect(IssueCode::WrongDescriptor, Resource::Parameters, issues) {
             return None;
         }
-        match params::decode(self.payload?) {
+        match params::decode(self.payload) {
             Ok(value) => Some(value),
             Err(error) => {
                 let code = match error {
@@ -106,10 +108,5 @@ impl<'a> Loaded<'a> {
                 None
             }
         }
-    }
-
-    /// The payload; empty when it could not be read.
-    pub fn bytes(&self) -> &'a [u8] {
-        self.payload.unwrap_or_default()
     }
 }

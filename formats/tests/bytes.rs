@@ -1,8 +1,9 @@
 //! The bytes are those that `docs/FORMAT.md` describes, written out here by hand.
 
 use crate::samples::*;
+use glint_formats::Wrap;
 use glint_formats::container::{FourCc, Limits};
-use glint_formats::ndf_maps::{DensityStorage, PlacementKind, PlacementParams, Wrap};
+use glint_formats::ndf_maps::{DensityStorage, PlacementKind, PlacementParams};
 use glint_formats::{Pack, Section, params, vk_format};
 use xxhash_rust::xxh3::xxh3_64;
 

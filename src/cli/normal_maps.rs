@@ -6,8 +6,8 @@ use crate::exit::Failure;
 use crate::input::{Channels, Crop, InputOptions};
 use clap::ValueEnum;
 use glint_bake_core::normal_map::GreenAxis;
+use glint_formats::Wrap;
 use glint_formats::container::MAX_NAME_BYTES;
-use glint_formats::ndf_maps::Wrap;
 use std::path::Path;
 
 /// How normal maps are read.

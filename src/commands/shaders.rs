@@ -9,7 +9,7 @@ use glint_formats::WriteOutcome;
 use glint_formats::provenance::InputDigest;
 use glint_shaders::translate::{self, ShaderFile};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Lines that `--help` shows and a test runs.
 const EXAMPLES: &str = "\
@@ -23,8 +23,8 @@ const SCHEMA: &str =
 
 /// Write the run time of the methods in a shading language
 ///
-/// WGSL is the library as it is: glint_*.wgsl without bindings, bind_*.wgsl and query_*.wgsl as examples of how it is bound
-/// and called. In other languages a file is one compute program that answers queries of one method: it holds all functions of
+/// WGSL is the library as it is, METHOD/FILE.wgsl without bindings, with bind_*.wgsl and query_*.wgsl as examples of how it is
+/// bound and called. In other languages a file is one compute program that answers queries of one method: it holds all functions of
 /// the library that the method needs.
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
@@ -100,16 +100,17 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         .map_err(|e| Failure::new(Exit::Unexpected, format!("{e}; please report this")))?;
     let paths: Vec<PathBuf> = files.iter().map(|file| args.output.join(&file.name)).collect();
     if args.dry_run {
-        if args.output.exists() {
-            paths.iter().try_for_each(|path| output::check_writable(path))?;
-        }
+        let there = paths.iter().filter(|path| path.parent().is_some_and(Path::exists));
+        there.into_iter().try_for_each(|path| output::check_writable(path))?;
         for path in &paths {
             terminal.say(&format!("would write {}", path.display()));
         }
         terminal.say("dry run, nothing was written");
         return Ok(());
     }
-    std::fs::create_dir_all(&args.output).map_err(|e| Failure::io(&args.output, "cannot be created", &e))?;
+    for folder in paths.iter().filter_map(|path| path.parent()) {
+        std::fs::create_dir_all(folder).map_err(|e| Failure::io(folder, "cannot be created", &e))?;
+    }
     paths.iter().try_for_each(|path| output::check_writable(path))?;
     for (file, path) in files.iter().zip(&paths) {
         let said = match output::write(path, &file.bytes)? {

@@ -1,7 +1,7 @@
 //! How a file is to be understood.
 
 use glint_bake_core::normal_map::GreenAxis;
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 
 /// Default of [`InputOptions::max_memory`]: 4 GiB.
 pub const DEFAULT_MAX_MEMORY: u64 = 4 << 30;

@@ -5,7 +5,7 @@
 //! measured on real materials of the kind.
 
 use glint_bake_core::normal_map::RawNormals;
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 use image::{Rgb, RgbImage};
 use rand::RngExt;
 use rand_pcg::Pcg32;

@@ -3,8 +3,9 @@
 use super::choose::{PackDrafts, Plan};
 use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
-use crate::methods::method::{Bake, Method};
-use crate::methods::planning::{Candidate, Planning, Request};
+use crate::methods::bake::{Bake, Candidate};
+use crate::methods::method::Method;
+use crate::methods::planning::{Planning, Request};
 use crate::scene::{Scene, Subject};
 use std::path::PathBuf;
 use std::sync::Arc;

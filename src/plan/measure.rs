@@ -1,8 +1,8 @@
 //! How good a pack of a scene is once it is built: read back, and measured at other places than the plan's.
 
 use crate::exit::{Exit, Failure};
-use crate::methods::method::{Bake, unplanned};
-use crate::methods::planning::{Planning, Request};
+use crate::methods::bake::Bake;
+use crate::methods::planning::{Planning, Request, unplanned};
 use crate::scene::{Scene, Subject};
 use glint_formats::{Limits, Pack};
 use std::path::Path;

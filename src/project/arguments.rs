@@ -6,7 +6,7 @@
 use super::entry::Entry;
 use super::model::{CommandLine, Target};
 use crate::cli::{RunFlags, typed};
-use crate::methods::method::Bake;
+use crate::methods::bake::Bake;
 use crate::methods::{MethodCommand, find};
 use clap::builder::ValueParser;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};

@@ -2,7 +2,8 @@
 
 use crate::cli::{OptionList, typed};
 use crate::exit::Failure;
-use crate::methods::method::{Bake, Method};
+use crate::methods::bake::Bake;
+use crate::methods::method::Method;
 use crate::plan::Planned;
 use crate::scene::Scene;
 use std::path::{Path, PathBuf};

@@ -6,16 +6,25 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+/// Files by their path from `folder`.
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
-    entries.map(|entry| (entry.file_name().into_string().unwrap(), fs::read(entry.path()).unwrap())).collect()
+    let mut files = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap()) {
+        let name = entry.file_name().into_string().unwrap();
+        if entry.path().is_dir() {
+            files.extend(contents(&entry.path()).into_iter().map(|(inner, bytes)| (format!("{name}/{inner}"), bytes)));
+        } else {
+            files.insert(name, fs::read(entry.path()).unwrap());
+        }
+    }
+    files
 }
 
 #[test]
 fn every_language_is_written_and_listed() {
     let folder = tempfile::tempdir().unwrap();
     for (lang, file) in [
-        ("wgsl", "glint_area_light.wgsl"),
+        ("wgsl", "area_light/eval.wgsl"),
         ("hlsl", "query_area_light.hlsl"),
         ("glsl", "query_area_light.comp"),
         ("msl", "query_area_light.metal"),
@@ -37,8 +46,8 @@ fn every_language_is_written_and_listed() {
         assert!(!again.stderr.contains(": written"), "{}", again.stderr);
         assert_eq!(contents(&folder.path().join(lang)), files);
     }
-    let library = fs::read(root().join("src/view/shaders/glint_area_light.wgsl")).unwrap();
-    assert_eq!(contents(&folder.path().join("wgsl"))["glint_area_light.wgsl"], library);
+    let library = fs::read(root().join("bake/src/hash.wgsl")).unwrap();
+    assert_eq!(contents(&folder.path().join("wgsl"))["hash.wgsl"], library);
 }
 
 #[test]

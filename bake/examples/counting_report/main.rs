@@ -13,7 +13,7 @@ use glint_bake_core::counting::pow1m::{Elementary, Native, pow1m_with};
 use glint_bake_core::counting::quality::{CountingQuality, SecondWord, compare, outcomes};
 use glint_bake_core::counting::reference::ExactBinomial;
 use glint_bake_core::counting::wgsl::LeastExact;
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 use std::time::Instant;
 use variants::{Draw, Variant, variants};
 
@@ -154,7 +154,7 @@ fn by_trials(paper: &Variant, ours: &Variant) {
 
 /// Least nanoseconds a draw of each variant, over passes that take turns.
 fn nanoseconds(all: &[Variant], n: f32, p: f32, q: f32) -> Vec<f64> {
-    let mut rng = ItemRng::new(5, 1, 0);
+    let mut rng = ItemRng::new(5, Purpose::Test(1), 0);
     let words: Vec<[u32; 2]> = (0..4096).map(|_| [rng.bits(), rng.bits()]).collect();
     let time = |draw: Draw| {
         let start = Instant::now();
@@ -272,7 +272,7 @@ fn draws(paper: &Variant, ours: &Variant) {
         let exact = ExactBinomial::of_f32(n, p, q);
         let mut row = format!("| {n} | {p:e} |");
         for variant in [paper, ours] {
-            let mut rng = ItemRng::new(31, 2, item as u32);
+            let mut rng = ItemRng::new(31, Purpose::Test(2), item as u32);
             let (mut shift, mut square, mut fourth) = (0.0, 0.0, 0.0);
             for _ in 0..count {
                 let d = f64::from((variant.draw)(n, p, q, [rng.bits(), rng.bits()])[0]) - exact.mean();

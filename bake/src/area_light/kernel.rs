@@ -2,7 +2,7 @@
 //! bilinear look-up of boxes averages over. Its standard deviation is half a texel of the level.
 
 use glam::DVec2;
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 
 /// For every texel of a level of `coarse` texels along an axis of `fine`: the texels under its kernel and their shares,
 /// which add up to 1. Texel i of the level covers texels i · fine / coarse to (i + 1) · fine / coarse.

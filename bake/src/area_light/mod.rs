@@ -33,6 +33,8 @@ pub mod sections;
 pub mod spread;
 pub mod tables;
 
+crate::shader::shaders!("area_light": "rect", "eval");
+
 pub use bake::{bake, pack};
 pub use material::AreaLightMaterial;
 pub use options::AreaLightOptions;

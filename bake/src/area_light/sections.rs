@@ -69,8 +69,8 @@ mod tests {
     use crate::area_light::{AreaLightOptions, bake};
     use crate::normal_map::NormalMap;
     use crate::progress::Silent;
+    use glint_formats::Wrap;
     use glint_formats::area_light::NormalStorage;
-    use glint_formats::ndf_maps::Wrap;
     use glint_formats::{Limits, PackBuilder};
 
     #[test]

@@ -24,6 +24,8 @@ pub mod quality;
 pub mod reference;
 pub mod wgsl;
 
+crate::shader::shaders!("counting": "eval");
+
 pub use binomial::{binomial, whole_binomial};
 pub use count::Count;
 pub use multinomial::{MAX_LEVELS, multinomial};

@@ -14,7 +14,7 @@
 //!   ratio of the footprint have no grid: where a pixel is long on the surface, its words are those of a square pixel of the
 //!   same area.
 
-use crate::dictionary::hash::{CellState, mix_bits};
+use crate::hash::{CellState, mix_bits};
 use glam::Vec2;
 use glint_formats::environment::MAX_LEVELS;
 

@@ -36,6 +36,8 @@ pub mod sections;
 pub mod tables;
 pub mod tree;
 
+crate::shader::shaders!("environment": "cells", "eval");
+
 pub use bake::bake;
 pub use image::EnvironmentImage;
 pub use options::{EnvironmentOptions, LevelCount};

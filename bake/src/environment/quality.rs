@@ -10,12 +10,10 @@ use super::prefilter::{OF_SHARP, SHARP};
 use super::reference::{Filtered, filtered, texel_mean};
 use super::tables::Environment;
 use crate::progress::Progress;
-use crate::rng::ItemRng;
+use crate::rng::{ItemRng, Purpose};
 use glint_formats::environment::{EnvironmentParams, MeasuredMip};
 use rayon::prelude::*;
 
-/// Purpose of the random numbers that choose texels.
-const PURPOSE: u32 = 30;
 /// Images of fewer columns have their pixels divided, so that the reference has not to divide them everywhere.
 const FINE_WIDTH: u32 = 256;
 /// Lines over a texel of the first mip.
@@ -91,7 +89,7 @@ fn luminance_below(environment: &Environment, mip: u32) -> Vec<f64> {
 /// A random texel and 1 over how much likelier it was than in an even choice: even numbers choose evenly, odd ones by
 /// luminance.
 fn chosen(below: &[f64], mip: u32, k: u32) -> (u32, f64) {
-    let mut rng = ItemRng::new(u64::from(mip), PURPOSE, k);
+    let mut rng = ItemRng::new(u64::from(mip), Purpose::EnvironmentTexels, k);
     let all = below.len();
     let index = if k.is_multiple_of(2) {
         rng.below(all as u32) as usize

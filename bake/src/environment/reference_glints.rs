@@ -7,12 +7,10 @@
 
 use super::image::{EnvironmentImage, direction};
 use super::reference::{ggx, pixel_of};
-use crate::rng::ItemRng;
+use crate::rng::{ItemRng, Purpose};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Purpose of the random numbers that place facets.
-const PURPOSE: u32 = 31;
 /// Parts of a pixel are at most this part of a lobe wide in its core,
 const PER_LOBE: f64 = 12.0;
 /// and this part of the distance to its middle outside.
@@ -123,7 +121,7 @@ impl FacetSurface {
 
     /// Luminance towards the eye of one patch of `facets` placed at random, patch number `patch`.
     pub fn placed(&self, image: &EnvironmentImage, facets: u32, seed: u64, patch: u32) -> f64 {
-        let mut rng = ItemRng::new(seed, PURPOSE, patch);
+        let mut rng = ItemRng::new(seed, Purpose::PlacedFacets, patch);
         let whole = self.facet_area();
         let x = self.normal.any_orthonormal_vector();
         let y = self.normal.cross(x);

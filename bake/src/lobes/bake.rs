@@ -15,10 +15,10 @@ use crate::error::Result;
 use crate::normal_map::NormalMap;
 use crate::progress::Progress;
 use crate::quality::sweep;
-use crate::rng::ItemRng;
+use crate::rng::{ItemRng, Purpose};
+use crate::wrap::wrapped;
 use glam::{DVec2, Vec2};
 use glint_formats::lobes::{FootprintError, LobeLevel, LobeStorage, LobesParams, MAX_LAST_CELLS, NormalsStorage};
-use glint_formats::ndf_maps::Wrap;
 use rayon::prelude::*;
 
 /// Cells that are reduced from seeds, one a texel, in texels; half that for four seeds a texel. Finer than the stored levels:
@@ -68,10 +68,7 @@ impl BakedLobes {
     /// Projected normal of texel (i, j), wrapped or clamped.
     pub fn texel(&self, i: i32, j: i32) -> Vec2 {
         let (w, h) = (self.params.width as i32, self.params.height as i32);
-        let (i, j) = match self.params.wrap {
-            Wrap::Repeat => (i.rem_euclid(w), j.rem_euclid(h)),
-            Wrap::Clamp => (i.clamp(0, w - 1), j.clamp(0, h - 1)),
-        };
+        let (i, j) = (wrapped(i, w, self.params.wrap), wrapped(j, h, self.params.wrap));
         let at = (j * w + i) as usize * self.params.normals.texel_bytes();
         let b = &self.normals[at..at + self.params.normals.texel_bytes()];
         match self.params.normals {
@@ -178,13 +175,12 @@ fn build_levels(map: &NormalMap, options: &LobesOptions, baked: &mut BakedLobes,
 }
 
 pub(crate) fn reduce(options: &LobesOptions, grid: &LobeLevel, x: u32, y: u32, parts: &[Gaussian4]) -> Vec<Gaussian4> {
-    const PURPOSE: u32 = 7;
     let settings = MergeSettings {
         merge: options.merge,
         lobes: options.lobes_per_cell as usize,
         blur: [BLUR_OF_CELL * grid.cell_texels as f64, options.roughness],
     };
-    let mut rng = ItemRng::new(options.seed, PURPOSE + (grid.cell_texels << 8), y * grid.cells_x + x);
+    let mut rng = ItemRng::new(options.seed, Purpose::LobeCells(grid.cell_texels), y * grid.cells_x + x);
     merge::reduce(parts, &settings, &mut rng)
 }
 

@@ -24,5 +24,7 @@ pub mod sections;
 pub mod seeds;
 pub(crate) mod span;
 
+crate::shader::shaders!("lobes": "eval", "query", "boxes", "packed", "half");
+
 pub use bake::{BakedLobes, bake};
 pub use options::LobesOptions;

@@ -14,9 +14,10 @@ use super::eval::{self, Frame, SeenLobe};
 use super::quantise::Scales;
 use super::span::{Slot, slots, span_x};
 use crate::footprint::Footprint;
-use glam::{DVec2, Mat2, Vec2};
+use crate::wrap::filtered_texels;
+use glam::{DVec2, IVec2, Mat2, Vec2};
+use glint_formats::Wrap;
 use glint_formats::lobes::Filter;
-use glint_formats::ndf_maps::Wrap;
 
 /// Choice between speed and accuracy at run time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -348,10 +349,7 @@ pub(crate) fn bilinear(filter: Filter, u: Vec2, texel: impl Fn(i32, i32) -> Vec2
     if filter == Filter::Nearest {
         return (texel(u.x.floor() as i32, u.y.floor() as i32), Mat2::ZERO, Vec2::ZERO);
     }
-    let p = u - 0.5;
-    let cell = p.floor();
-    let f = p - cell;
-    let (i, j) = (cell.x as i32, cell.y as i32);
+    let (IVec2 { x: i, y: j }, f) = filtered_texels(u);
     let (s00, s10, s01, s11) = (texel(i, j), texel(i + 1, j), texel(i, j + 1), texel(i + 1, j + 1));
     let top = s00 + (s10 - s00) * f.x;
     let bottom = s01 + (s11 - s01) * f.x;

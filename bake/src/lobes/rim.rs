@@ -46,7 +46,7 @@ mod tests {
     use crate::lobes::{BakedLobes, LobesOptions, bake};
     use crate::normal_map::NormalMap;
     use crate::progress::Silent;
-    use glint_formats::ndf_maps::Wrap;
+    use glint_formats::Wrap;
 
     /// Ramps from the middle to `steepest`, the length of the projected normal.
     fn ramps(steepest: f32) -> BakedLobes {

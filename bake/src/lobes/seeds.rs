@@ -7,8 +7,8 @@
 use super::gaussian::Gaussian4;
 use crate::normal_map::NormalMap;
 use glam::{DMat2, DVec2};
+use glint_formats::Wrap;
 use glint_formats::lobes::Filter;
-use glint_formats::ndf_maps::Wrap;
 
 /// A piece of an axis in which the map runs straight from one texel to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -87,7 +87,7 @@ fn for_each_quarter(map: &NormalMap, rect: TexelRect, mut visit: impl FnMut(&[DV
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glint_formats::ndf_maps::Wrap;
+    use glint_formats::Wrap;
 
     fn noisy_map() -> NormalMap {
         let projected = (0..20u32)

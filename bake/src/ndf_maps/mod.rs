@@ -22,3 +22,5 @@ mod spline;
 pub mod surface;
 mod tile_fit;
 pub mod transform;
+
+crate::shader::shaders!("ndf_maps": "eval", "ellipse", "material", "tiles", "lobes", "view", "tiled", "regions", "classes", "probes", "stochastic");

@@ -12,8 +12,8 @@ use crate::lobes::{BakedLobes, LobesOptions};
 use crate::normal_map::NormalMap;
 use crate::progress::Progress;
 use crate::synthesis::{self, SynthesisOptions};
+use glint_formats::Wrap;
 use glint_formats::lobes::{LobeLevel, MAX_LAST_CELLS};
-use glint_formats::ndf_maps::Wrap;
 use rayon::prelude::*;
 use std::borrow::Cow;
 

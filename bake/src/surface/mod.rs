@@ -13,6 +13,8 @@ pub mod query;
 pub mod sections;
 mod whole;
 
+crate::shader::shaders!("surface": "query", "seams", "blocks");
+
 pub use bake::bake;
 pub use query::SurfaceSettings;
 

@@ -13,8 +13,8 @@ use crate::lobes::quantise::{Lobe, Scales};
 use crate::lobes::query::{Detail, Gathered, Lod, QuerySettings, bilinear};
 use crate::lobes::span::span_x;
 use glam::{DVec2, Mat2, Vec2};
+use glint_formats::Wrap;
 use glint_formats::lobes::Filter;
-use glint_formats::ndf_maps::Wrap;
 use glint_formats::synthesis::Layout;
 
 /// A surface without end is taken to repeat after as many patches as fit into this many texels, so that places have digits.

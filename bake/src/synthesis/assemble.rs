@@ -3,7 +3,7 @@
 use super::Synthesis;
 use crate::error::{BakeError, Result};
 use crate::normal_map::NormalMap;
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 use rayon::prelude::*;
 
 /// The `width` × `height` texels of the surface from (x, y) on, as a map that does not repeat.

@@ -6,7 +6,7 @@
 
 use super::Synthesis;
 use super::eval_tiles::{Tiles, tile_source};
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 use glint_formats::synthesis::{Layout, PathShape};
 
 /// Edge of the finest blocks, in texels: the cells of the finest clustered level.

@@ -6,7 +6,7 @@
 //! exact integers: their sums do not depend on the order, and the choice of a patch does not depend on the machine.
 
 use crate::normal_map::NormalMap;
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 
 /// Largest size of a feature.
 pub const RANGE: f64 = 2047.0;

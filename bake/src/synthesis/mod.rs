@@ -23,6 +23,8 @@ pub mod sections;
 pub mod strips;
 pub mod tiles;
 
+crate::shader::shaders!("synthesis": "eval", "paths", "grid", "tiles");
+
 pub use assemble::assemble;
 pub use bake::{Synthesis, bake};
 pub use options::{SynthesisOptions, Target};

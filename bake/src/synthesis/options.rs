@@ -2,7 +2,7 @@
 
 use crate::error::{BakeError, Result};
 use crate::normal_map::NormalMap;
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 use glint_formats::synthesis::{MAX_COLOURS, MAX_OVERLAP, MAX_PATCHES, MAX_SAMPLE_SIZE, MAX_VARIANTS, PATCH_RANGE};
 
 /// Most offsets among which patches are chosen.

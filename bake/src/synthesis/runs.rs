@@ -4,7 +4,7 @@
 //! Tan et al. 2022 leave this open: their step 3 would choose such a patch every time.
 
 use super::candidates::Candidates;
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 use std::collections::BTreeMap;
 
 /// Which candidate goes on where another ends, and how many in a row may.

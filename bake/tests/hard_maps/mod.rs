@@ -1,7 +1,7 @@
 //! Maps that every method of normal maps must survive.
 
 use glint_bake_core::normal_map::NormalMap;
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 
 /// A repeated map of projected normals.
 pub fn map(width: u32, height: u32, normal: impl Fn(u32, u32) -> [f32; 2]) -> NormalMap {

@@ -1,8 +1,11 @@
 //! Builds the bytes of a pack. Equal sections in equal order give equal bytes.
 
 use super::entry::SectionEntry;
+use super::four_cc::FourCc;
+use super::limits::Limits;
+use super::resource::Resource;
 use super::section::{Codec, Section, check_name, label};
-use super::{FourCc, Limits, Resource, header, layout};
+use super::{header, layout};
 use crate::error::FormatError;
 use crate::params;
 use std::borrow::Cow;

@@ -1,8 +1,9 @@
 //! One entry of the section table: 136 bytes, every one of them checked.
 
-use super::header::{u16_at, u32_at, u64_at};
-use super::section::{check_name, label};
-use super::{Codec, FourCc, MAX_NAME_BYTES, Resource};
+use super::four_cc::FourCc;
+use super::resource::Resource;
+use super::section::{Codec, MAX_NAME_BYTES, check_name, label};
+use crate::bytes::{u16_at, u32_at, u64_at};
 use crate::issue::{Issue, IssueCode};
 use serde::{Serialize, Serializer};
 

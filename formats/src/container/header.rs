@@ -2,6 +2,7 @@
 
 use super::entry::ENTRY_BYTES;
 use super::limits::Limits;
+use crate::bytes::{u16_at, u32_at, u64_at};
 use crate::issue::{Issue, IssueCode};
 use xxhash_rust::xxh3::Xxh3;
 
@@ -130,19 +131,4 @@ fn magic_message(found: &[u8]) -> String {
         "this is not a glintpack"
     };
     format!("expected {}, found {}; {hint}", MAGIC.escape_ascii(), found.escape_ascii())
-}
-
-/// Little-endian u16 at `at`; the caller has checked the length.
-pub(super) fn u16_at(bytes: &[u8], at: usize) -> u16 {
-    u16::from_le_bytes([bytes[at], bytes[at + 1]])
-}
-
-/// Little-endian u32 at `at`; the caller has checked the length.
-pub(super) fn u32_at(bytes: &[u8], at: usize) -> u32 {
-    u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]])
-}
-
-/// Little-endian u64 at `at`; the caller has checked the length.
-pub(super) fn u64_at(bytes: &[u8], at: usize) -> u64 {
-    u64::from(u32_at(bytes, at)) | u64::from(u32_at(bytes, at + 4)) << 32
 }

@@ -1,6 +1,7 @@
 //! Finds sections by kind and name without a scan of the table, which a hostile file could make long.
 
-use super::{FourCc, SectionEntry};
+use super::entry::SectionEntry;
+use super::four_cc::FourCc;
 
 /// Positions of entries, ordered by kind and name.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 //!
 //! One layout is allowed, so every byte of a file belongs to the header, the table, one payload or padding.
 
-use super::SectionEntry;
+use super::entry::SectionEntry;
 use crate::issue::{Issue, IssueCode};
 
 /// Payloads start at multiples of this many bytes, as GPU row copies want it.

@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// The bytes of a pack.
 #[derive(Debug)]
-pub(super) enum Bytes {
+pub(crate) enum Bytes {
     /// In memory.
     Owned(Vec<u8>),
     /// A mapped file.

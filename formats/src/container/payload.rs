@@ -1,6 +1,7 @@
 //! One section's bytes: checksum first, then decompression that never makes more than the table says.
 
-use super::{Codec, SectionEntry};
+use super::entry::SectionEntry;
+use super::section::Codec;
 use crate::issue::{Issue, IssueCode};
 use std::borrow::Cow;
 use std::io::Read;

@@ -1,6 +1,7 @@
 //! One section as it is handed to the writer.
 
-use super::{FourCc, Resource};
+use super::four_cc::FourCc;
+use super::resource::Resource;
 use crate::params;
 use bytemuck::NoUninit;
 use serde::Serialize;

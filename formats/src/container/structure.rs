@@ -2,9 +2,10 @@
 
 use super::entry::{ENTRY_BYTES, SectionEntry};
 use super::header::{self, HEADER_BYTES};
-use super::{Index, Limits, layout};
+use super::index::Index;
+use super::layout;
+use super::limits::Limits;
 use crate::issue::{Issue, IssueCode, Severity};
-use crate::kinds;
 
 /// A pack whose header, table, layout and padding are right.
 #[derive(Clone, Debug)]
@@ -16,8 +17,13 @@ pub(crate) struct Structure {
 }
 
 impl Structure {
-    /// Reads the structure of `bytes`, or says what is wrong with it.
-    pub fn read(bytes: &[u8], limits: &Limits) -> Result<Structure, Vec<Issue>> {
+    /// Reads the structure of `bytes`, or says what is wrong with it. `kind_issue` says what a reader that knows the kinds of
+    /// sections finds wrong with one.
+    pub fn read(
+        bytes: &[u8],
+        limits: &Limits,
+        kind_issue: impl Fn(&SectionEntry) -> Option<Issue>,
+    ) -> Result<Structure, Vec<Issue>> {
         let header = header::read(bytes, limits).map_err(|issue| vec![issue])?;
         let table_end = header::table_end(header.section_count);
         let mut entries = Vec::new();
@@ -40,7 +46,7 @@ impl Structure {
         }
         issues.extend(layout::check(bytes, table_end, &entries).err());
         issues.extend(check_raw_total(&entries, limits).err());
-        issues.extend(entries.iter().filter_map(kinds::check));
+        issues.extend(entries.iter().filter_map(kind_issue));
         if issues.iter().any(|issue| issue.severity == Severity::Error) {
             return Err(issues);
         }

@@ -3,8 +3,8 @@
 use super::without;
 use crate::samples::*;
 use glint_formats::IssueCode;
+use glint_formats::Wrap;
 use glint_formats::lobes::LobesParams;
-use glint_formats::ndf_maps::*;
 use glint_formats::synthesis::{self, SynthesisParams};
 
 pub fn with(edit: impl Fn(&mut LobesParams, &mut SynthesisParams)) -> Vec<u8> {

@@ -1,7 +1,7 @@
 //! Sections of an area light.
 
+use glint_formats::Wrap;
 use glint_formats::area_light::{self, AreaLightParams, NormalStorage};
-use glint_formats::ndf_maps::*;
 use glint_formats::{Resource, Section, vk_format};
 
 /// A map of 2 × 1 texels, with roughness by direction.

@@ -1,7 +1,7 @@
 //! Sections of lobes.
 
+use glint_formats::Wrap;
 use glint_formats::lobes::{self, HalfLobe, LobeLevel, LobeStorage, LobesParams, NormalsStorage, PackedLobe};
-use glint_formats::ndf_maps::*;
 use glint_formats::{Resource, Section, vk_format};
 
 /// A map of 5 × 3 texels: two cells of 4 texels, one of 8, two lobes each.

@@ -1,6 +1,7 @@
 //! Sections of NDF maps.
 
 use super::*;
+use glint_formats::Wrap;
 use glint_formats::container::full_mip_count;
 use glint_formats::ndf_maps::*;
 use glint_formats::{Resource, Section, vk_format};

@@ -1,8 +1,8 @@
 //! Sections of lobes and the surface they lie on.
 
 use super::*;
+use glint_formats::Wrap;
 use glint_formats::lobes::{self, LobeStorage, LobesParams};
-use glint_formats::ndf_maps::*;
 use glint_formats::synthesis::SynthesisParams;
 use glint_formats::{Resource, Section, vk_format};
 

@@ -1,7 +1,7 @@
 //! Sections of a synthesised surface.
 
 use glint_formats::Section;
-use glint_formats::ndf_maps::*;
+use glint_formats::Wrap;
 use glint_formats::synthesis::{self, Layout, SynthesisParams};
 
 /// A surface of 2 × 1 patches of four texels, which overlap by two.

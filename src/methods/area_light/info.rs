@@ -6,9 +6,9 @@ use glam::Vec2;
 use glint_bake_core::area_light::fetch::{Maps, fetch};
 use glint_bake_core::area_light::sections;
 use glint_formats::Pack;
+use glint_formats::Wrap;
 use glint_formats::area_light::{MeasuredError, NormalStorage};
 use glint_formats::container::full_mip_count;
-use glint_formats::ndf_maps::Wrap;
 use serde::Serialize;
 use std::fmt::Write;
 

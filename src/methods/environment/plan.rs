@@ -3,13 +3,14 @@
 use super::args::{Args, LEVELS_AUTO};
 use super::bake::draft;
 use crate::exit::Failure;
-use crate::methods::planning::{Candidates, Request, USED};
+use crate::methods::bake::Candidates;
+use crate::methods::planning::{Request, USED};
 use glam::DVec3;
 use glint_bake_core::environment::eval::environment_radiance;
 use glint_bake_core::environment::image::luminance;
 use glint_bake_core::environment::reference::filtered;
 use glint_bake_core::environment::{Environment, EnvironmentImage, sections};
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 use glint_formats::Pack;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -70,9 +71,8 @@ pub fn measure(args: &Args, pack: &Pack, request: &Request<'_>) -> Result<f64, F
 }
 
 fn exact(image: &EnvironmentImage, environment: &Environment, (low, high): (f64, f64), seed: u64) -> Vec<Lookup> {
-    const PURPOSE: u32 = 61;
     let lookup = |k: u32| {
-        let mut rng = ItemRng::new(seed, PURPOSE, k);
+        let mut rng = ItemRng::new(seed, Purpose::EnvironmentPlan, k);
         let (z, turn) = (2.0 * rng.unit() - 1.0, TAU * rng.unit());
         let flat = (1.0 - z * z).max(0.0).sqrt();
         let direction = DVec3::new(flat * libm::cos(turn), flat * libm::sin(turn), z);

@@ -8,9 +8,9 @@ use glint_bake_core::ndf_maps::eval::Material;
 use glint_bake_core::ndf_maps::sections;
 use glint_formats::ndf_maps::{
     CLASSES, DENSITY, LAYERS, LayeredMaterial, MeasuredError, NOISE, NORMALS, PALETTE, PARAMS, PLACEMENT,
-    PlacementKind, TILES, Wrap,
+    PlacementKind, TILES,
 };
-use glint_formats::{FourCc, Pack};
+use glint_formats::{FourCc, Pack, Wrap};
 use serde::Serialize;
 
 /// Bytes of one tile in the paper's layout: 128 × 128 floats.

@@ -3,7 +3,9 @@
 mod compute;
 mod device;
 mod resources;
+mod sections;
 
 pub use compute::{answer, read_back};
 pub use device::{Gpu, GpuError, Wish};
-pub use resources::{GpuTexture, ResourceSet, Resources, TABLE_WIDTH};
+pub use resources::{BoundSection, GpuTexture, ResourceSet, Resources, TABLE_WIDTH};
+pub use sections::{bind_pack, bind_sections};

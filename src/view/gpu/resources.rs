@@ -1,6 +1,7 @@
 //! What a program binds: resources in the order of their binding numbers, with the layout that follows from them.
 
 use super::device::Gpu;
+use glint_formats::FourCc;
 use wgpu::util::{DeviceExt, TextureDataOrder};
 
 /// A texture as it is made from bytes.
@@ -25,6 +26,18 @@ pub struct ResourceSet {
     resources: Vec<Resource>,
     notes: Vec<String>,
     bytes: u64,
+    /// The section that the next resource holds.
+    next: Option<FourCc>,
+    sections: Vec<(FourCc, BoundSection)>,
+}
+
+/// A section on the GPU.
+#[derive(Clone, Debug)]
+pub enum BoundSection {
+    /// In a buffer.
+    Buffer(wgpu::Buffer),
+    /// In a texture.
+    Texture(wgpu::Texture),
 }
 
 #[derive(Debug)]
@@ -45,6 +58,8 @@ pub struct Resources {
     pub notes: Vec<String>,
     /// Bytes on the GPU, of textures and buffers.
     pub bytes: u64,
+    /// The sections of a pack among them, in the order of bindings.
+    pub sections: Vec<(FourCc, BoundSection)>,
 }
 
 /// Elements in a row of [`ResourceSet::table`]; `bind_table_place` of bind_table.wgsl has the same.
@@ -64,7 +79,8 @@ impl ResourceSet {
         let mut padded = contents.to_vec();
         padded.resize(contents.len().next_multiple_of(16).max(16), 0);
         self.bytes += padded.len() as u64;
-        let buffer = gpu.buffer(usage, &padded);
+        let buffer = gpu.buffer(usage | wgpu::BufferUsages::COPY_SRC, &padded);
+        self.sections.extend(self.next.take().map(|kind| (kind, BoundSection::Buffer(buffer.clone()))));
         self.push(
             wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
             Resource::Buffer(buffer),
@@ -90,7 +106,13 @@ impl ResourceSet {
         self.texture_of(gpu, shape, wgpu::TextureSampleType::Float { filterable }, contents)
     }
 
-    fn texture_of(
+    /// Says that the next resource holds this section as it is.
+    pub(super) fn section(&mut self, kind: FourCc) -> &mut Self {
+        self.next = Some(kind);
+        self
+    }
+
+    pub(super) fn texture_of(
         &mut self,
         gpu: &Gpu,
         shape: GpuTexture,
@@ -104,12 +126,13 @@ impl ResourceSet {
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format: shape.format,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         };
         self.bytes += contents.len() as u64;
         let texture =
             gpu.device.create_texture_with_data(&gpu.queue, &descriptor, TextureDataOrder::MipMajor, contents);
+        self.sections.extend(self.next.take().map(|kind| (kind, BoundSection::Texture(texture.clone()))));
         let view = texture
             .create_view(&wgpu::TextureViewDescriptor { dimension: Some(shape.dimension), ..Default::default() });
         self.push(
@@ -180,6 +203,6 @@ impl ResourceSet {
             layout: &layout,
             entries: &entries,
         });
-        Resources { layout, group, notes: self.notes, bytes: self.bytes }
+        Resources { layout, group, notes: self.notes, bytes: self.bytes, sections: self.sections }
     }
 }

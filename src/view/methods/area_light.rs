@@ -4,9 +4,9 @@ use crate::gpu::{Gpu, GpuTexture, ResourceSet, Resources};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec2;
 use glint_bake_core::area_light::AreaLightMaterial;
+use glint_formats::Wrap;
 use glint_formats::area_light::{NormalStorage, TABLE_SIZE};
 use glint_formats::container::full_mip_count;
-use glint_formats::ndf_maps::Wrap;
 
 /// `AreaLightData`.
 #[repr(C)]

@@ -6,8 +6,8 @@ use glint_bake_core::lobes::BakedLobes;
 use glint_bake_core::lobes::quantise::nominal_extent;
 use glint_bake_core::surface::Surface;
 use glint_bake_core::synthesis::Synthesis;
+use glint_formats::Wrap;
 use glint_formats::lobes::{Filter, LobeLevel, LobeStorage, LobesParams, NormalsStorage};
-use glint_formats::ndf_maps::Wrap;
 use glint_formats::synthesis::Layout;
 
 /// Most levels: cells of 4 texels doubled to the largest map, and the whole of a surface.
@@ -146,8 +146,8 @@ fn synthesis_uniform(synthesis: &Synthesis) -> SynthesisUniform {
 /// The WGSL files that a program of these lobes takes in besides `query_lobes` or `shade_lobes`.
 pub fn modules(params: &LobesParams) -> [&'static str; 1] {
     match params.storage {
-        LobeStorage::Packed => ["glint_lobes_packed"],
-        LobeStorage::Half => ["glint_lobes_half"],
+        LobeStorage::Packed => ["lobes::packed"],
+        LobeStorage::Half => ["lobes::half"],
     }
 }
 
@@ -156,10 +156,10 @@ pub fn modules(params: &LobesParams) -> [&'static str; 1] {
 pub fn surface_modules(surface: &Surface, whole_blocks: bool) -> [&'static str; 3] {
     let [records] = modules(&surface.lobes.params);
     let arrangement = match surface.synthesis.params.layout {
-        Layout::Patches { .. } => "glint_synthesis_grid",
-        Layout::CornerTiles { .. } => "glint_synthesis_tiles",
+        Layout::Patches { .. } => "synthesis::grid",
+        Layout::CornerTiles { .. } => "synthesis::tiles",
     };
-    [records, arrangement, if whole_blocks { "glint_surface_blocks" } else { "glint_surface_seams" }]
+    [records, arrangement, if whole_blocks { "surface::blocks" } else { "surface::seams" }]
 }
 
 /// Uploads the lobes of a map: for `query_lobes` and `shade_lobes`.

@@ -6,7 +6,8 @@ mod reach;
 use crate::gpu::{Gpu, GpuError, ResourceSet, Resources, TABLE_WIDTH};
 use bytemuck::{Pod, Zeroable};
 use glint_bake_core::ndf_maps::eval::Material;
-use glint_formats::ndf_maps::{DensityStorage, NoiseTexel, PlacementKind, Wrap};
+use glint_formats::Wrap;
+use glint_formats::ndf_maps::{DensityStorage, NoiseTexel, PlacementKind};
 
 /// `GlintNdfMaterial`.
 #[repr(C)]

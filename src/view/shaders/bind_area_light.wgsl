@@ -1,6 +1,8 @@
 // Bindings of an area-light material for glint_area_light.wgsl and glint_ltc.wgsl: group 1. How they are read is in
 // bind_area_light_sampler.wgsl (by samplers, for engines) or bind_area_light_loads.wgsl (to the last bit of a float).
 
+#import area_light::eval
+
 struct AreaLightData {
     // Texels of the textures' first mip on one texel of the pack's: less than 1 where fine mips were left out on upload.
     texel_scale: vec2f,

@@ -1,6 +1,8 @@
 // Accessors of glint_area_light.wgsl and glint_ltc.wgsl by loads of single texels: filtered with all digits of a float, as
 // the CPU twin does, which samplers do not promise.
 
+#import bind_area_light
+
 // Four texels, and the place between them.
 struct AreaLightCell {
     low: vec2i,

@@ -1,6 +1,9 @@
 // Accessors of glint_area_light.wgsl and glint_ltc.wgsl by samplers: one look-up a texture. GPUs may take the place between
 // texels and mips in steps of 1/256.
 
+#import bind_area_light
+#import bind_loads
+
 fn glint_area_light_normals(position: vec2f, level: f32) -> vec4f {
     bound_loads += 1u;
     return textureSampleLevel(area_light_normals, area_light_sampler, position / area_light.maps.size, level);

@@ -1,5 +1,8 @@
 // Bindings of a dictionary for glint_dictionary.wgsl: group 1.
 
+#import dictionary::eval
+#import bind_loads
+
 struct DictionaryData {
     tables: GlintDictionaryTables,
 }

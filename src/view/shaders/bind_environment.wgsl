@@ -1,5 +1,8 @@
 // Bindings of an environment for glint_environment.wgsl: group 2, read by a sampler.
 
+#import environment::eval
+#import bind_loads
+
 @group(2) @binding(0) var<uniform> environment: GlintEnvironment;
 // Section ENRA: RGBA16Float or RGBA32Float, all mips.
 @group(2) @binding(1) var environment_radiance: texture_cube<f32>;

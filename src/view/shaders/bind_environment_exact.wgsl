@@ -3,6 +3,8 @@
 // What bind_environment.wgsl does by a sampler, in f32: samplers may round weights to 8 bits and differ at the corners of
 // a cube. Twin of glint-bake-core environment/eval.rs, cube_taps; for tests and for devices whose samplers do not serve.
 
+#import environment::eval
+
 @group(2) @binding(0) var<uniform> environment: GlintEnvironment;
 // Faces of the cubes as layers.
 @group(2) @binding(1) var environment_radiance: texture_2d_array<f32>;

@@ -1,6 +1,10 @@
 // Bindings of lobes, and of the surface synthesised from their map if there is one: group 1. One layout for both, for
 // glint_lobes.wgsl, glint_synthesis.wgsl and glint_surface.wgsl.
 
+#import lobes::query
+#import synthesis::paths
+#import bind_loads
+
 struct LobesData {
     map: GlintLobesMap,
     @align(16) synthesis: GlintSynthesis,

@@ -1,6 +1,10 @@
 // Bindings of NDF maps for glint_ndf_maps.wgsl: group 1. Materials share the tables, so that a layered material takes no more
 // bindings than a plain one.
 
+#import ndf_maps::eval
+#import bind_loads
+#import bind_table
+
 struct NdfMapsLayer {
     @align(16) material: GlintNdfMaterial,
 }

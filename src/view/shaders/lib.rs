@@ -1,112 +1,78 @@
 //! The run time of the glint methods in WGSL: a library of functions without bindings, and what makes programs of it.
 //!
-//! Four kinds of file lie beside this one:
-//! - `glint_<topic>.wgsl`: the library. Functions are named as their twins in `glint-bake-core`, data comes in by parameters
-//!   or by accessor functions that the including program defines; each file lists its accessors on top.
+//! The library is `glint_bake_core::shaders`: each file lies beside its twin in Rust, with functions of the same names, data by
+//! parameters or by accessor functions that the including program defines. Beside this file lie three kinds more:
 //! - `bind_<method>.wgsl`: bindings in group 1 with those accessors, as the viewer and the tests have them. Replace it by your
 //!   engine's.
 //! - `query_<method>.wgsl`: a compute program that answers queries, one an invocation: what the parity tests run.
 //!   query_environment.wgsl takes either of the two bindings of an environment, so it names none.
 //! - `view_*.wgsl` and `shade_<method>.wgsl`: the viewer's own programs, see view_scene.wgsl.
 //!
+//! A file names those that it calls in lines `#import <method>::<file>`.
 //! Order of declarations does not matter in WGSL, so a program is its files one after the other ([`compose`]).
 
 pub mod operations;
 pub mod translate;
 
-/// A WGSL file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Module {
-    /// File name without `.wgsl`.
-    pub name: &'static str,
-    /// Its text.
-    pub source: &'static str,
-    /// Library files whose functions it calls.
-    pub needs: &'static [&'static str],
-}
+use glint_bake_core::shaders::{self, Shader};
 
-/// One row a file: its name, and the library files that it calls.
-macro_rules! modules {
-    ($($name:literal needs [$($need:literal),*];)*) => {
-        /// Every WGSL file.
-        pub const MODULES: &[Module] = &[
-            $(Module { name: $name, source: include_str!(concat!($name, ".wgsl")), needs: &[$($need),*] },)*
-        ];
+/// A file beside this one.
+macro_rules! own {
+    ($name:literal) => {
+        Shader { name: $name, source: include_str!(concat!($name, ".wgsl")) }
     };
 }
 
-modules! {
-    "glint_brdf" needs [];
-    "glint_hash" needs [];
-    "glint_footprint" needs [];
-    "glint_erf" needs [];
-    "glint_dictionary" needs ["glint_hash"];
-    "bind_loads" needs [];
-    "bind_table" needs [];
-    "bind_dictionary" needs ["glint_dictionary", "bind_loads"];
-    "query_dictionary" needs ["bind_dictionary"];
-    "glint_ggx" needs [];
-    "glint_ltc" needs [];
-    "glint_area_light" needs ["glint_ltc"];
-    "bind_area_light" needs ["glint_area_light"];
-    "bind_area_light_sampler" needs ["bind_area_light", "bind_loads"];
-    "bind_area_light_loads" needs ["bind_area_light"];
-    "query_area_light" needs ["bind_area_light_loads", "glint_ggx"];
-    "glint_counting" needs [];
-    "query_counting" needs ["glint_counting"];
-    "glint_surface_cells" needs ["glint_hash", "glint_counting"];
-    "glint_environment" needs ["glint_counting"];
-    "bind_environment" needs ["glint_environment", "bind_loads"];
-    "bind_environment_exact" needs ["glint_environment"];
-    "query_environment" needs ["glint_environment", "glint_surface_cells"];
-    "glint_ndf_ellipse" needs ["glint_footprint"];
-    "glint_ndf_material" needs [];
-    "glint_ndf_tiles" needs ["glint_ndf_material"];
-    "glint_ndf_lobes" needs ["glint_ndf_material", "glint_erf"];
-    "glint_ndf_view" needs ["glint_ndf_ellipse", "glint_ndf_tiles", "glint_ndf_lobes"];
-    "glint_ndf_tiled" needs ["glint_ndf_view"];
-    "glint_ndf_regions" needs ["glint_ndf_view"];
-    "glint_ndf_classes" needs ["glint_ndf_regions"];
-    "glint_ndf_probes" needs ["glint_ndf_regions"];
-    "glint_ndf_stochastic" needs ["glint_ndf_classes", "glint_ndf_probes"];
-    "glint_ndf_maps" needs ["glint_ndf_tiled", "glint_ndf_stochastic"];
-    "bind_ndf_maps" needs ["glint_ndf_maps", "bind_loads", "bind_table"];
-    "query_ndf_maps" needs ["bind_ndf_maps"];
-    "glint_lobes" needs ["glint_footprint", "glint_erf"];
-    "glint_lobes_boxes" needs ["glint_lobes"];
-    "glint_lobes_levels" needs ["glint_lobes_boxes"];
-    "glint_lobes_packed" needs ["glint_lobes"];
-    "glint_lobes_half" needs ["glint_lobes"];
-    "glint_synthesis_paths" needs [];
-    "glint_synthesis" needs ["glint_synthesis_paths"];
-    "glint_synthesis_grid" needs ["glint_synthesis"];
-    "glint_synthesis_tiles" needs ["glint_synthesis", "glint_hash"];
-    "bind_lobes" needs ["glint_lobes_levels", "glint_synthesis_paths", "bind_loads"];
-    "query_lobes" needs ["bind_lobes"];
-    "glint_surface" needs ["glint_lobes_levels", "glint_synthesis"];
-    "glint_surface_seams" needs ["glint_surface"];
-    "glint_surface_blocks" needs ["glint_surface"];
-    "query_surface" needs ["bind_lobes", "glint_surface"];
-    "view_scene" needs [];
-    "view_surface" needs ["view_scene", "view_sky", "glint_brdf", "glint_hash", "bind_loads"];
-    "view_sky" needs [];
-    "view_background" needs ["view_scene", "view_sky"];
-    "view_accumulate" needs [];
-    "view_present" needs [];
-    "shade_smooth_brdf" needs ["view_scene", "glint_brdf"];
-    "shade_smooth" needs ["shade_smooth_brdf"];
-    "shade_dictionary" needs ["view_scene", "glint_brdf", "bind_dictionary"];
-    "shade_area_light" needs ["view_scene", "bind_area_light_sampler", "glint_ggx", "glint_hash"];
-    "shade_plain_ltc" needs ["view_scene", "bind_area_light_sampler", "glint_ggx"];
-    "shade_background" needs ["view_scene", "bind_environment"];
-    "shade_environment_surface" needs ["view_scene", "bind_environment"];
-    "shade_environment_smooth" needs ["shade_environment_surface"];
-    "shade_environment" needs ["shade_environment_surface", "shade_smooth_brdf", "glint_surface_cells"];
-    "shade_ndf_maps" needs ["view_scene", "glint_brdf", "bind_ndf_maps"];
-    "shade_normals" needs ["view_scene", "glint_brdf"];
-    "shade_lobes" needs ["shade_normals", "bind_lobes"];
-    "shade_surface" needs ["shade_normals", "bind_lobes", "glint_surface"];
-    "shade_rect_points" needs ["view_scene"];
+/// Files of the viewer and of the tests: bindings, queries, shading. The run time itself is
+/// [`glint_bake_core::shaders::all`].
+const OWN: &[Shader] = &[
+    own!("bind_loads"),
+    own!("bind_table"),
+    own!("bind_dictionary"),
+    own!("query_dictionary"),
+    own!("bind_area_light"),
+    own!("bind_area_light_sampler"),
+    own!("bind_area_light_loads"),
+    own!("query_area_light"),
+    own!("query_counting"),
+    own!("bind_environment"),
+    own!("bind_environment_exact"),
+    own!("query_environment"),
+    own!("bind_ndf_maps"),
+    own!("query_ndf_maps"),
+    own!("bind_lobes"),
+    own!("query_lobes"),
+    own!("query_surface"),
+    own!("view_scene"),
+    own!("view_surface"),
+    own!("view_sky"),
+    own!("view_background"),
+    own!("view_accumulate"),
+    own!("view_present"),
+    own!("shade_smooth_brdf"),
+    own!("shade_smooth"),
+    own!("shade_dictionary"),
+    own!("shade_area_light"),
+    own!("shade_plain_ltc"),
+    own!("shade_background"),
+    own!("shade_environment_surface"),
+    own!("shade_environment_smooth"),
+    own!("shade_environment"),
+    own!("shade_ndf_maps"),
+    own!("shade_normals"),
+    own!("shade_lobes"),
+    own!("shade_surface"),
+    own!("shade_rect_points"),
+];
+
+/// Every WGSL file: the run time, then the viewer's own.
+pub fn modules() -> impl Iterator<Item = &'static Shader> {
+    shaders::all().chain(OWN)
+}
+
+/// Names of the files that a file imports, in the order of its `#import` lines.
+pub fn imports(shader: &Shader) -> impl Iterator<Item = &'static str> {
+    shader.source.lines().filter_map(|line| line.strip_prefix("#import ")).map(str::trim)
 }
 
 /// A program of the viewer: its name, and the files that give each hook of view_scene.wgsl once.
@@ -126,13 +92,13 @@ pub const SHADING: &[Program] = &[
 
 /// Files of which a method takes one of each group, as its pack stores data; the first where it is all the same.
 pub const CHOICES: &[(&str, &[&[&str]])] = &[
-    ("lobes", &[&["glint_lobes_packed", "glint_lobes_half"]]),
+    ("lobes", &[&["lobes::packed", "lobes::half"]]),
     (
         "surface",
         &[
-            &["glint_lobes_packed", "glint_lobes_half"],
-            &["glint_synthesis_grid", "glint_synthesis_tiles"],
-            &["glint_surface_blocks", "glint_surface_seams"],
+            &["lobes::packed", "lobes::half"],
+            &["synthesis::grid", "synthesis::tiles"],
+            &["surface::blocks", "surface::seams"],
         ],
     ),
 ];
@@ -170,15 +136,15 @@ pub fn query_files(method: &str) -> Vec<&'static str> {
 }
 
 /// The file `name`; `None` if there is none.
-pub fn module(name: &str) -> Option<&'static Module> {
-    MODULES.iter().find(|module| module.name == name)
+pub fn module(name: &str) -> Option<&'static Shader> {
+    modules().find(|module| module.name == name)
 }
 
 /// These files and all that they need, each once, what is needed before what needs it.
 ///
 /// # Panics
-/// If a file is not in [`MODULES`]: names are constants of this workspace.
-pub fn parts(names: &[&str]) -> Vec<&'static Module> {
+/// If a file is not in [`modules`]: names are constants of this workspace.
+pub fn parts(names: &[&str]) -> Vec<&'static Shader> {
     let mut taken = Vec::new();
     for name in names {
         add(name, &mut taken);
@@ -189,15 +155,17 @@ pub fn parts(names: &[&str]) -> Vec<&'static Module> {
 /// The text of a program of these files and all that they need, each once.
 ///
 /// # Panics
-/// If a file is not in [`MODULES`]: names are constants of this workspace.
+/// If a file is not in [`modules`]: names are constants of this workspace.
 pub fn compose(names: &[&str]) -> String {
-    parts(names).iter().flat_map(|module| [module.source, "\n"]).collect()
+    let lines = parts(names).into_iter().flat_map(|module| module.source.lines());
+    let lines = lines.filter(|line| !line.starts_with("#import "));
+    lines.flat_map(|line| [line, "\n"]).collect()
 }
 
-fn add(name: &str, taken: &mut Vec<&'static Module>) {
+fn add(name: &str, taken: &mut Vec<&'static Shader>) {
     let module = module(name).unwrap_or_else(|| panic!("there is no {name}.wgsl"));
-    for need in module.needs {
-        add(need, taken);
+    for import in imports(module) {
+        add(import, taken);
     }
     if !taken.iter().any(|other| other.name == module.name) {
         taken.push(module);
@@ -210,7 +178,7 @@ mod tests {
 
     #[test]
     fn a_program_holds_each_file_once() {
-        let text = compose(&["glint_dictionary", "query_dictionary"]);
+        let text = compose(&["dictionary::eval", "query_dictionary"]);
         assert_eq!(text.matches("fn glint_patch_sdf(").count(), 1);
         assert!(text.find("fn glint_mix_bits(").unwrap() < text.find("fn glint_patch_sdf(").unwrap());
     }

@@ -1,5 +1,8 @@
 // Answers queries of area lights on a normal-mapped surface, one an invocation.
 
+#import bind_area_light_loads
+#import ggx
+
 struct AreaLightQuery {
     // Corners of the light; w is unused.
     corner_0: vec4f,

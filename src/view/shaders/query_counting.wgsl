@@ -1,5 +1,7 @@
 // Answers draws of binomial and multinomial counts, one an invocation.
 
+#import counting::eval
+
 struct CountingQuery {
     // Trials, chance of a hit and of a miss, and levels of the multinomial draw.
     n: f32,

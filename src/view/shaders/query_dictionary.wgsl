@@ -1,5 +1,7 @@
 // Answers queries of a dictionary's slope distribution, one an invocation.
 
+#import bind_dictionary
+
 struct DictionaryQuery {
     alpha: vec2f,
     slope: vec2f,

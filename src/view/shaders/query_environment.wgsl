@@ -1,5 +1,8 @@
 // Answers queries of glints under an environment, one an invocation.
 
+#import environment::eval
+#import environment::cells
+
 struct EnvironmentQuery {
     normal: vec3f,
     alpha: f32,

@@ -1,5 +1,7 @@
 // Answers queries of the P-NDF of a map's lobes, one an invocation.
 
+#import bind_lobes
+
 struct LobesQuery {
     mean: vec2f,
     s: vec2f,

@@ -1,5 +1,7 @@
 // Answers queries of the density of normals under footprints on NDF maps, one an invocation.
 
+#import bind_ndf_maps
+
 struct NdfMapsQuery {
     mean: vec2f,
     s: vec2f,

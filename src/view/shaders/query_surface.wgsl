@@ -1,5 +1,8 @@
 // Answers queries of the P-NDF of a synthesised surface, one an invocation.
 
+#import bind_lobes
+#import surface::query
+
 struct SurfaceQuery {
     mean: vec2f,
     s: vec2f,

@@ -2,6 +2,11 @@
 // points and directions (GGX). The base roughness is material.alpha.x; material.lobes above 0 asks for roughness by
 // direction.
 
+#import view_scene
+#import bind_area_light_sampler
+#import ggx
+#import hash
+
 // Whether material.lobes is obeyed. A pipeline that is made with false is for lobes of 0 and leaves out what directions take:
 // rasterisers on CPUs execute both sides of a branch.
 override AREA_LIGHT_DIRECTIONAL: bool = true;

@@ -1,5 +1,9 @@
 // A surface with the glints of a slope dictionary.
 
+#import view_scene
+#import brdf
+#import bind_dictionary
+
 // What a material has; false leaves its part out of the program.
 // Parts that do not glint.
 override DICTIONARY_PARTIAL: bool = true;

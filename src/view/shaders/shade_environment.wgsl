@@ -1,6 +1,10 @@
 // A surface with glints under an environment. Other lights have no extent, so that no facet would ever reflect them to the eye: they
 // see the smooth surface.
 
+#import shade_environment_surface
+#import shade_smooth_brdf
+#import environment::cells
+
 // Number of radiance levels of the pack, whether they have colours, and their radiances: what is known when a pipeline is made costs
 // neither loads nor branches, which some devices take both ways. No levels: all are read from the environment.
 override ENVIRONMENT_LEVELS: u32 = 0u;

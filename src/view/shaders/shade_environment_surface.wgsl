@@ -1,5 +1,8 @@
 // The viewer's point as image-based lighting sees it.
 
+#import view_scene
+#import bind_environment
+
 // Surface in the environment's frame. Roughness that differs between the axes is taken as the round one of the same peak.
 fn shade_environment_point(point: ViewPoint, facets: f32) -> GlintSurface {
     let normal = scene.environment_from_world * point.normal;

@@ -2,6 +2,9 @@
 // material.texels_per_unit the map's scale, material.pixel_sigma the pixel's filter. The program
 // takes in glint_lobes_packed.wgsl or glint_lobes_half.wgsl as well, as the pack stores lobes.
 
+#import shade_normals
+#import bind_lobes
+
 // Whether mass beyond the rim is given back, see glint_lobes_rim.
 override LOBES_RIM: bool = true;
 

@@ -4,6 +4,10 @@
 // material.switches: bit 0 swaps the two layers; bit 1 takes the settings that accuracy is measured with in place of those for
 // pictures. material.f0 is that of the base, or of the only layer.
 
+#import view_scene
+#import brdf
+#import bind_ndf_maps
+
 const SHADE_NDF_SWAP: u32 = 1u;
 const SHADE_NDF_ACCURATE: u32 = 2u;
 

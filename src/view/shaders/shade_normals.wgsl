@@ -1,5 +1,8 @@
 // What methods of normal maps share: densities over projected normals as radiance, and one sample of the reference.
 
+#import view_scene
+#import brdf
+
 // BRDF times n.l of a density over the disk of projected normals at the half vector. Projected solid angle is area of the disk,
 // so that the density is the microfacet distribution D.
 fn shade_projected(density: f32, point: ViewPoint, light: vec3f, half: vec3f) -> vec3f {

@@ -1,6 +1,10 @@
 // What shade_area_light.wgsl is measured against: the same mean normals with one roughness everywhere, material.alpha.x,
 // under the same lights (plain LTC for rectangles). Its reference is itself.
 
+#import view_scene
+#import bind_area_light_sampler
+#import ggx
+
 fn shade_plain_ltc_level(point: ViewPoint) -> f32 {
     let scale = material.texels_per_unit * area_light.texel_scale;
     let longer2 = max(dot(point.d_dx * scale, point.d_dx * scale), dot(point.d_dy * scale, point.d_dy * scale));

@@ -1,5 +1,7 @@
 // A rectangle light as four by four points, each with its share of the area.
 
+#import view_scene
+
 fn shade_rect(point: ViewPoint) -> vec3f {
     let a = scene.rect[0].xyz;
     let u = scene.rect[1].xyz - a;

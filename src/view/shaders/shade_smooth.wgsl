@@ -1,5 +1,7 @@
 // The smooth surface.
 
+#import shade_smooth_brdf
+
 fn shade_reflect(point: ViewPoint, light: vec3f) -> vec3f {
     return shade_smooth_brdf(point.view, light) * light.z;
 }

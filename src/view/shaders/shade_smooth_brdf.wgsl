@@ -1,5 +1,8 @@
 // The smooth BRDF that glints converge to: Beckmann or GGX slopes of the material's roughness.
 
+#import view_scene
+#import brdf
+
 fn shade_smooth_brdf(view: vec3f, light: vec3f) -> vec3f {
     let half = glint_half_vector(view, light);
     let v = glint_normal_to_slope(half) / material.alpha;

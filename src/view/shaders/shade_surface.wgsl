@@ -2,6 +2,10 @@
 // program takes in glint_lobes_packed.wgsl or glint_lobes_half.wgsl, glint_synthesis_grid.wgsl or glint_synthesis_tiles.wgsl, and
 // glint_surface_blocks.wgsl (or glint_surface_seams.wgsl, at many times the cost near seams) as well.
 
+#import shade_normals
+#import bind_lobes
+#import surface::query
+
 // Whether mass beyond the rim is given back, see glint_lobes_rim.
 override LOBES_RIM: bool = true;
 

@@ -6,7 +6,8 @@
 //! textures and samplers, in the order of groups and bindings; Metal has the lengths of arrays in the buffer after the
 //! last. Loops of the library are bounded, so no counters are added to them.
 
-use crate::{MODULES, Module, module, parts};
+use crate::{module, modules, parts};
+use glint_bake_core::shaders::{self, Shader};
 use naga::back::{glsl, hlsl, msl, spv};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{AddressSpace, ResourceBinding, ShaderStage, TypeInner};
@@ -71,7 +72,7 @@ const QUERY: &str = "query_";
 
 /// Names of the methods: one for every `query_<method>.wgsl`.
 pub fn methods() -> Vec<&'static str> {
-    MODULES.iter().filter_map(|module| module.name.strip_prefix(QUERY)).collect()
+    modules().filter_map(|module| module.name.strip_prefix(QUERY)).collect()
 }
 
 /// The files of these methods in a language, in a fixed order. WGSL is the library with examples of how it is bound and
@@ -98,17 +99,31 @@ pub fn files(language: Language, methods: &[&str]) -> Result<Vec<ShaderFile>, Tr
         .collect()
 }
 
-/// The library's files that the methods need, with what the viewer's shading of them needs, in the order of [`MODULES`].
+/// The library's files that the methods need, with what the viewer's shading of them needs, in the order of [`modules`].
 fn library(methods: &[&str]) -> Vec<ShaderFile> {
     let roots = methods.iter().flat_map(|method| [format!("{QUERY}{method}"), format!("shade_{method}")]);
     let there: Vec<&str> = roots.filter_map(|name| module(&name)).map(|module| module.name).collect();
     let needed = parts(&there);
-    let own = ["glint_", "bind_", QUERY];
-    MODULES
-        .iter()
-        .filter(|module| needed.contains(module) && own.iter().any(|prefix| module.name.starts_with(prefix)))
-        .map(|module| ShaderFile { name: format!("{}.wgsl", module.name), bytes: module.source.into() })
-        .collect()
+    let exported = |shader: &Shader| {
+        shaders::all().any(|other| other == shader)
+            || ["bind_", QUERY].iter().any(|prefix| shader.name.starts_with(prefix))
+    };
+    let exported = modules().filter(|shader| needed.contains(shader) && exported(shader));
+    exported.map(|shader| ShaderFile { name: file_name(shader), bytes: plain_text(shader).into() }).collect()
+}
+
+/// Path of an exported file: `lobes/query.wgsl` for `lobes::query`.
+pub fn file_name(shader: &Shader) -> String {
+    format!("{}.wgsl", shader.name.replace("::", "/"))
+}
+
+/// The text of a file for compilers that know no imports: each `#import` line says the file that is called as a comment.
+pub fn plain_text(shader: &Shader) -> String {
+    let line = |line: &str| match line.strip_prefix("#import ") {
+        Some(name) => format!("// Calls {}.wgsl.\n", name.trim().replace("::", "/")),
+        None => format!("{line}\n"),
+    };
+    shader.source.lines().map(line).collect()
 }
 
 /// Instructions of a program as SPIR-V, declarations left out: its length as a driver gets it, before it is optimised.
@@ -141,7 +156,7 @@ fn count_instructions(words: &[u32]) -> usize {
 }
 
 /// One program in another language.
-fn translate(language: Language, program: &'static Module) -> Result<Vec<u8>, TranslateError> {
+fn translate(language: Language, program: &'static Shader) -> Result<Vec<u8>, TranslateError> {
     let fail = |reason: String| TranslateError { program: program.name, language, reason };
     let source = crate::compose(&crate::query_files(program.name.trim_start_matches(QUERY)));
     let module = naga::front::wgsl::parse_str(&source).map_err(|e| fail(e.emit_to_string(&source)))?;
@@ -159,7 +174,7 @@ fn translate(language: Language, program: &'static Module) -> Result<Vec<u8>, Tr
 }
 
 /// The text behind a comment that says what it is made from: the first paragraph of every file of the library.
-fn with_header(language: Language, program: &Module, text: &str) -> String {
+fn with_header(language: Language, program: &Shader, text: &str) -> String {
     let mut header = format!(
         "// {}.wgsl of glint-bake {}, translated by naga. Entry point main; what it is made of:\n",
         program.name,

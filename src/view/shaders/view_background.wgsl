@@ -2,6 +2,9 @@
 //
 // fn shade_background(direction: vec3f) -> vec3f gives the environment's radiance from a unit world direction.
 
+#import view_scene
+#import view_sky
+
 override LIGHTS: u32 = 1u;
 
 struct ViewBackground {

@@ -1,5 +1,11 @@
 // Draws a mesh: the pixel's point, the lights, and the method between them.
 
+#import view_scene
+#import view_sky
+#import brdf
+#import hash
+#import bind_loads
+
 const VIEW_OVERLAY_FOOTPRINT: u32 = 1u;
 const VIEW_OVERLAY_LOD: u32 = 2u;
 const VIEW_OVERLAY_LOADS: u32 = 3u;

@@ -1,7 +1,7 @@
 //! Every program of the viewer and of the tests is sound WGSL, whatever adapter there is.
 
 use glint_shaders::translate::CAPABILITIES;
-use glint_shaders::{CHOICES, MODULES, PASSES, SHADING, compose, program};
+use glint_shaders::{CHOICES, PASSES, SHADING, compose, modules, program};
 use naga::valid::{ValidationFlags, Validator};
 
 /// Hooks that a shading program must have once, see view_scene.wgsl.
@@ -42,7 +42,7 @@ fn programs_of_the_viewer_are_valid() {
 
 #[test]
 fn programs_that_answer_queries_are_valid() {
-    let queries = MODULES.iter().filter_map(|module| module.name.strip_prefix("query_"));
+    let queries = modules().filter_map(|module| module.name.strip_prefix("query_"));
     for method in queries {
         let files = glint_shaders::query_files(method);
         check(method, &compose(&files));

@@ -12,8 +12,8 @@ use glint_bake_core::area_light::reference::brdf_cosine;
 use glint_bake_core::area_light::{AreaLightMaterial, AreaLightOptions, bake};
 use glint_bake_core::normal_map::{HORIZON, NormalMap};
 use glint_bake_core::progress::Silent;
+use glint_formats::Wrap;
 use glint_formats::area_light::NormalStorage;
-use glint_formats::ndf_maps::Wrap;
 use glint_view::gpu::{Gpu, answer};
 use glint_view::methods::area_light::{upload, upload_within};
 use rand::{Rng, RngExt};
@@ -275,7 +275,7 @@ fn hard_cases_are_finite_on_the_gpu_too() {
     let mut bright = 0;
     // By loads, and by samplers as the viewer has it.
     let by_samplers = {
-        let library = ["bind_area_light_sampler", "glint_ggx"];
+        let library = ["bind_area_light_sampler", "ggx"];
         glint_shaders::compose(&library) + glint_shaders::module("query_area_light").unwrap().source
     };
     for source in [&glint_shaders::compose(&["query_area_light"]), &by_samplers] {

@@ -3,7 +3,7 @@
 pub use crate::adapter::gpu;
 use glam::Vec3;
 use glint_bake_core::normal_map::NormalMap;
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::path::{Path, PathBuf};

@@ -13,7 +13,7 @@ use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::surface;
 use glint_bake_core::synthesis::{SynthesisOptions, Target};
-use glint_formats::ndf_maps::Wrap;
+use glint_formats::Wrap;
 use glint_formats::{Codec, Limits, Pack, PackBuilder, Section};
 use glint_view::gpu::Gpu;
 use glint_view::render::{Camera, Method, Renderer, View, picture};

@@ -1,0 +1,379 @@
+// Dictionary of 1D marginal slope distributions: slope distribution of a pixel.
+// Chermain et al. 2020, "Procedural Physically based BRDF for Real-Time Rendering of Glints", sections 5 and 6, Eq. 7 to 16.
+// Twin of glint-bake-core dictionary/{cells,eval,brdf}.rs, where deviations from the paper are derived.
+//
+// Accessors that the including program defines:
+//   fn glint_dictionary_filtered(row: u32, place: f32) -> f32
+//       row `level * marginals + marginal` of the table (section SDTB) at `place` texels from the centre of its first one,
+//       linearly filtered and clamped to the edges
+//   fn glint_dictionary_colour(index: u32) -> vec3f          glint colour, linear RGB; called only if material.colours > 0
+
+#import hash
+
+const GLINT_TARGET_BECKMANN: u32 = 0u;
+const GLINT_TARGET_GGX: u32 = 1u;
+// Coarsest level of the cell hierarchy.
+const GLINT_MAX_CELL_LEVEL: u32 = 24u;
+const GLINT_MAX_ANISOTROPY: f32 = 16.0;
+// Squared radius, in cells, that the reconstruction filter adds.
+const GLINT_RECONSTRUCTION_RADIUS2: f32 = 0.64;
+const GLINT_PI: f32 = 3.14159265;
+
+const GLINT_DRAW_COVERAGE: u32 = 0u;
+const GLINT_DRAW_DENSITY_RADIUS: u32 = 1u;
+const GLINT_DRAW_DENSITY_ANGLE: u32 = 2u;
+const GLINT_DRAW_COLOUR: u32 = 3u;
+
+// Shape of the tables, from the section SDPP.
+struct GlintDictionaryTables {
+    marginals: u32,
+    // This level itself is the smooth target.
+    levels: u32,
+    entries: u32,
+    // Roughness of the target of the tables.
+    alpha_dict: f32,
+    // Slope at which the tables end.
+    domain: f32,
+    // entries / domain.
+    inv_spacing: f32,
+    // Slope area that a lobe fills, 4 pi lobe_std^2.
+    lobe_area: f32,
+}
+
+struct GlintDictionaryMaterial {
+    // Roughness along the tangent axes, 1e-3 to 1.
+    alpha: vec2f,
+    // GLINT_TARGET_BECKMANN or GLINT_TARGET_GGX.
+    normal_target: u32,
+    // Facets on one unit of surface area.
+    density: f32,
+    // Share of the surface that glints, 0 to 1.
+    relative_area: f32,
+    // Standard deviation of a cell's level.
+    density_randomisation: f32,
+    // Largest ratio of the footprint's axes, 1 to 16.
+    max_anisotropy: f32,
+    seed: u32,
+    // Number of glint colours; 0 means white.
+    colours: u32,
+    // Mean of the colours, white if there are none.
+    mean_colour: vec3f,
+}
+
+// Where a pixel lies on the surface, in surface units (those of the density).
+struct GlintPixelOnSurface {
+    position: vec2f,
+    // Derivatives along the screen's axes, a pixel.
+    d_dx: vec2f,
+    d_dy: vec2f,
+}
+
+// A sum of weighted slope distributions.
+struct GlintSlopeSum {
+    // Density over slopes, by colour.
+    sdf: vec3f,
+    // Share of the footprint that glints.
+    coverage: f32,
+    // Cells visited.
+    cells: u32,
+}
+
+// Squared radii of the footprint in cells^2, and the level at which its minor radius is one cell.
+struct GlintPixelFootprint {
+    xx: f32,
+    xy: f32,
+    yy: f32,
+    lod: f32,
+}
+
+// The footprint in cells of one level: an ellipse around `centre`, relative to the corner of the base cell.
+struct GlintLevelWindow {
+    base: vec2i,
+    centre: vec2f,
+    // Squared radius along y.
+    yy: f32,
+    // Inverse of the matrix of squared radii: (xx, xy, yy).
+    inverse: vec3f,
+    first_row: i32,
+    last_row: i32,
+}
+
+// A slope as all cells see it.
+struct GlintSlopeQuery {
+    // Slope in the dictionary's plane, before the cell's rotation.
+    in_dict: vec2f,
+    // Squared slope in units of the dictionary's roughness.
+    q_dict: f32,
+    // From the dictionary's density to that of the material.
+    jacobian: f32,
+    // The smooth target.
+    smooth_sdf: f32,
+}
+
+struct GlintCellSdf {
+    sdf: vec3f,
+    covered: f32,
+}
+
+// Footprint of the derivatives of the surface position along the screen axes, in cells of level 0 a pixel.
+fn glint_pixel_footprint(d_dx: vec2f, d_dy: vec2f, max_anisotropy: f32) -> GlintPixelFootprint {
+    let limit = vec2f(1.0e8);
+    let dx = clamp(d_dx, -limit, limit);
+    let dy = clamp(d_dy, -limit, limit);
+    let a = dx.x * dx.x + dy.x * dy.x;
+    let b = dx.x * dx.y + dy.x * dy.y;
+    let c = dx.y * dx.y + dy.y * dy.y;
+    let half_difference = 0.5 * (a - c);
+    let half_gap = sqrt(half_difference * half_difference + b * b);
+    var major2 = 0.5 * (a + c) + half_gap;
+    let cross = dx.x * dy.y - dx.y * dy.x;
+    var minor2 = cross * cross / max(major2, 1.0e-30);
+    let ratio = clamp(max_anisotropy, 1.0, GLINT_MAX_ANISOTROPY);
+    minor2 = min(max(minor2, major2 / (ratio * ratio)), major2);
+
+    let coarsest = exp2(f32(GLINT_MAX_CELL_LEVEL));
+    let shrink = min(coarsest * coarsest / max(minor2, 1.0e-30), 1.0);
+    major2 *= shrink;
+    minor2 *= shrink;
+    var direction = vec2f(0.0);
+    if half_gap > 0.0 {
+        direction = vec2f(half_difference / half_gap, b / half_gap);
+    }
+    let mean = 0.5 * (major2 + minor2);
+    let spread = 0.5 * (major2 - minor2);
+    return GlintPixelFootprint(
+        mean + spread * direction.x,
+        spread * direction.y,
+        mean - spread * direction.x,
+        0.5 * log2(max(minor2, 1.0)),
+    );
+}
+
+// The footprint around `position` (in cells of level 0) at a whole level.
+fn glint_level_window(footprint: GlintPixelFootprint, position: vec2f, level: u32) -> GlintLevelWindow {
+    let scale = exp2(-f32(level));
+    let limit = vec2f(1.0e9);
+    let p = clamp(position * scale, -limit, limit);
+    let base = floor(p);
+    let centre = p - base;
+    let scale2 = scale * scale;
+    let xx = footprint.xx * scale2 + GLINT_RECONSTRUCTION_RADIUS2;
+    let xy = footprint.xy * scale2;
+    let yy = footprint.yy * scale2 + GLINT_RECONSTRUCTION_RADIUS2;
+    let reach = sqrt(yy);
+    let det = max(xx * yy - xy * xy, GLINT_RECONSTRUCTION_RADIUS2 * GLINT_RECONSTRUCTION_RADIUS2);
+    return GlintLevelWindow(
+        vec2i(base),
+        centre,
+        yy,
+        vec3f(yy, -xy, xx) / det,
+        i32(ceil(centre.y - reach - 0.5)),
+        i32(floor(centre.y + reach - 0.5)),
+    );
+}
+
+// First and last column of a row, relative to the base cell, whose centres lie in the ellipse.
+fn glint_row_span(window: GlintLevelWindow, row: i32) -> vec2i {
+    let dy = f32(row) + 0.5 - window.centre.y;
+    let mid = window.centre.x - window.inverse.y / window.inverse.x * dy;
+    let half = sqrt(max(1.0 - dy * dy / window.yy, 0.0) / window.inverse.x);
+    return vec2i(i32(ceil(mid - half - 0.5)), i32(floor(mid + half - 0.5)));
+}
+
+// Weight, not yet normalised, of a cell by its place relative to the base cell.
+fn glint_cell_weight(window: GlintLevelWindow, column: i32, row: i32) -> f32 {
+    let dx = f32(column) + 0.5 - window.centre.x;
+    let dy = f32(row) + 0.5 - window.centre.y;
+    let r2 = window.inverse.x * dx * dx + 2.0 * window.inverse.y * dx * dy + window.inverse.z * dy * dy;
+    let inside = max(1.0 - r2, 0.0);
+    return inside * inside;
+}
+
+// ln(1 + x) / x for x >= 0, accurate for small x too.
+fn glint_log1p_over_x(x: f32) -> f32 {
+    if x > 0.3 {
+        return log(1.0 + x) / x;
+    }
+    let d = 1.0 / (2.0 + x);
+    let s = x * d;
+    let s2 = s * s;
+    return 2.0 * d * (1.0 + s2 * (1.0 / 3.0 + s2 * (0.2 + s2 * (1.0 / 7.0))));
+}
+
+// Slope in units of the roughness, with its squared length kept finite.
+fn glint_scaled_slope(material: GlintDictionaryMaterial, slope: vec2f) -> vec2f {
+    let limit = vec2f(1.0e12);
+    return clamp(slope / material.alpha, -limit, limit);
+}
+
+// The smooth target at a slope.
+fn glint_smooth_sdf(material: GlintDictionaryMaterial, slope: vec2f) -> f32 {
+    let v = glint_scaled_slope(material, slope);
+    let q = v.x * v.x + v.y * v.y;
+    let area = GLINT_PI * material.alpha.x * material.alpha.y;
+    if material.normal_target == GLINT_TARGET_GGX {
+        return 1.0 / (area * (1.0 + q) * (1.0 + q));
+    }
+    return exp(-q) / area;
+}
+
+// Marginal P(x) at a level below `levels`, for x >= 0: linear filtering with clamp to edge, zero beyond the domain.
+fn glint_marginal(tables: GlintDictionaryTables, index: u32, level: u32, x: f32) -> f32 {
+    if x >= tables.domain {
+        return 0.0;
+    }
+    let place = clamp(x * tables.inv_spacing - 0.5, 0.0, f32(tables.entries - 1u));
+    return glint_dictionary_filtered(level * tables.marginals + index, place);
+}
+
+// Level for n facets a cell before rounding, 1/2 log2 n.
+fn glint_facet_level(tables: GlintDictionaryTables, material: GlintDictionaryMaterial, cell_level: u32) -> f32 {
+    let cells_above = f32(tables.levels - 1u) - f32(cell_level);
+    return 0.5 * log2(max(material.density, 1.0e-30)) - cells_above;
+}
+
+// Cosine and sine, within 1.1e-5, of the angle between -pi/4 and pi/4 that a random word stands for.
+fn glint_cell_rotation(bits: u32) -> vec2f {
+    let angle = f32(bits >> 8u) * (0.5 * GLINT_PI / 16777216.0) - 0.25 * GLINT_PI;
+    let s = angle * angle;
+    let cosine = 0.99999004 + s * (-0.49970816 + s * 0.04039857);
+    let sine = angle * (0.999995 + s * (-0.16660162 + s * 0.00812156));
+    return vec2f(cosine, sine);
+}
+
+// Index below `count` from the upper 16 bits of a random word.
+fn glint_pick(count: u32, bits: u32) -> u32 {
+    return ((bits >> 16u) * count) >> 16u;
+}
+
+// Colour of a cell's glint, of a material that has colours: its own while a facet or less is lit, the mean of all where many are.
+fn glint_colour(
+    tables: GlintDictionaryTables,
+    material: GlintDictionaryMaterial,
+    bits: u32,
+    level: u32,
+    q_dict: f32,
+) -> vec3f {
+    let own = glint_dictionary_colour(glint_pick(material.colours, bits));
+    let density = exp(-q_dict) / (GLINT_PI * tables.alpha_dict * tables.alpha_dict);
+    let lit = exp2(2.0 * (f32(level) + 1.0)) * tables.lobe_area * density;
+    let share = inverseSqrt(max(lit, 1.0));
+    return material.mean_colour + (own - material.mean_colour) * share;
+}
+
+// The query for a slope of a material.
+fn glint_slope_query(
+    tables: GlintDictionaryTables,
+    material: GlintDictionaryMaterial,
+    slope: vec2f,
+) -> GlintSlopeQuery {
+    let v = glint_scaled_slope(material, slope);
+    let q = v.x * v.x + v.y * v.y;
+    var stretch = tables.alpha_dict;
+    var jacobian = tables.alpha_dict * tables.alpha_dict / (material.alpha.x * material.alpha.y);
+    var q_dict = q;
+    if material.normal_target == GLINT_TARGET_GGX {
+        let ratio = glint_log1p_over_x(q);
+        stretch *= sqrt(ratio);
+        q_dict = q * ratio;
+        jacobian /= 1.0 + q;
+    }
+    return GlintSlopeQuery(v * stretch, q_dict, jacobian, glint_smooth_sdf(material, slope));
+}
+
+// Slope distribution of one cell (Eq. 11). `state` is that of the cell's first cell of level 0 (Eq. 8).
+fn glint_cell_sdf(
+    tables: GlintDictionaryTables,
+    material: GlintDictionaryMaterial,
+    state: GlintCellState,
+    facet_level: f32,
+    query: GlintSlopeQuery,
+) -> GlintCellSdf {
+    if material.relative_area < 1.0 {
+        if glint_draw_uniform(state, GLINT_DRAW_COVERAGE) >= material.relative_area {
+            return GlintCellSdf(vec3f(0.0), 0.0);
+        }
+    }
+    var wished = facet_level;
+    if material.density_randomisation > 0.0 {
+        let radius = sqrt(-2.0 * log(1.0 - glint_draw_uniform(state, GLINT_DRAW_DENSITY_RADIUS)));
+        let normal = radius * cos(2.0 * GLINT_PI * glint_draw_uniform(state, GLINT_DRAW_DENSITY_ANGLE));
+        wished += material.density_randomisation * normal;
+    }
+    let level = u32(clamp(floor(wished + 0.5), 0.0, f32(tables.levels)));
+    if level == tables.levels {
+        return GlintCellSdf(material.mean_colour * query.smooth_sdf, 1.0);
+    }
+
+    let turn = glint_cell_rotation(state.a);
+    let px = turn.x * query.in_dict.x + turn.y * query.in_dict.y;
+    let py = turn.x * query.in_dict.y - turn.y * query.in_dict.x;
+    let i = glint_pick(tables.marginals, state.b);
+    let j = glint_pick(tables.marginals, state.b << 16u);
+    let sdf = glint_marginal(tables, i, level, abs(px)) * glint_marginal(tables, j, level, abs(py)) * query.jacobian;
+    if material.colours == 0u {
+        return GlintCellSdf(vec3f(sdf), 1.0);
+    }
+    let colour = glint_colour(tables, material, glint_draw_bits(state, GLINT_DRAW_COLOUR), level, query.q_dict);
+    return GlintCellSdf(colour * sdf, 1.0);
+}
+
+// Slope distribution of the footprint at one whole level (algorithm 2), its weights normalised.
+fn glint_level_sdf(
+    tables: GlintDictionaryTables,
+    material: GlintDictionaryMaterial,
+    footprint: GlintPixelFootprint,
+    position: vec2f,
+    level: u32,
+    query: GlintSlopeQuery,
+) -> GlintSlopeSum {
+    let count_level = glint_facet_level(tables, material, level);
+    let surely_smooth = count_level - 6.0 * material.density_randomisation >= f32(tables.levels) - 0.5;
+    if surely_smooth && material.relative_area >= 1.0 {
+        return GlintSlopeSum(material.mean_colour * query.smooth_sdf, 1.0, 0u);
+    }
+    let window = glint_level_window(footprint, position, level);
+    var sdf = vec3f(0.0);
+    var coverage = 0.0;
+    var total = 0.0;
+    var cells = 0u;
+    for (var row = window.first_row; row <= window.last_row; row++) {
+        let span = glint_row_span(window, row);
+        let y = u32(window.base.y + row) << level;
+        let key = glint_row_key(y, material.seed);
+        for (var column = span.x; column <= span.y; column++) {
+            let weight = glint_cell_weight(window, column, row);
+            let x = u32(window.base.x + column) << level;
+            let state = glint_cell_state_in_row(x, y, key, material.seed);
+            let cell = glint_cell_sdf(tables, material, state, count_level, query);
+            sdf += cell.sdf * weight;
+            coverage += cell.covered * weight;
+            total += weight;
+            cells += 1u;
+        }
+    }
+    return GlintSlopeSum(sdf / total, coverage / total, cells);
+}
+
+// Slope distribution of a pixel (Eq. 12) at the slope of the half vector.
+fn glint_patch_sdf(
+    tables: GlintDictionaryTables,
+    material: GlintDictionaryMaterial,
+    pixel: GlintPixelOnSurface,
+    slope: vec2f,
+) -> GlintSlopeSum {
+    let cells_per_unit = exp2(f32(tables.levels - 1u));
+    let footprint =
+        glint_pixel_footprint(pixel.d_dx * cells_per_unit, pixel.d_dy * cells_per_unit, material.max_anisotropy);
+    let fine = min(floor(footprint.lod), f32(GLINT_MAX_CELL_LEVEL - 1u));
+    let blend = footprint.lod - fine;
+    let position = pixel.position * cells_per_unit;
+    let query = glint_slope_query(tables, material, slope);
+    let a = glint_level_sdf(tables, material, footprint, position, u32(fine), query);
+    let b = glint_level_sdf(tables, material, footprint, position, u32(fine) + 1u, query);
+    return GlintSlopeSum(
+        a.sdf + (b.sdf - a.sdf) * blend,
+        a.coverage + (b.coverage - a.coverage) * blend,
+        a.cells + b.cells,
+    );
+}

@@ -1,0 +1,217 @@
+// Image-based lighting of glints: filtered radiance, and a draw of how many facets reflect each of a few radiance levels.
+// Kneiphof and Klein 2025, "Real-Time Image-based Lighting of Glints", sections 4 and 5, Eq. 11, 15, 17 and 21.
+// Twin of glint-bake-core environment/{eval,glints}.rs, where deviations from the paper are derived: the variance of
+// glints is that of the filtered second moment, and levels may have colours.
+//
+// Directions are unit vectors in the environment's frame. Accessors that the including program defines; `mip` is
+// glint_environment_mip, and cubes are filtered between texels, across edges and between mips:
+//   fn glint_environment_radiance_at(direction: vec3f, mip: f32) -> vec4f                section ENRA times radiance_scale: RGB, root mean square luminance
+//   fn glint_environment_indicators_at(layer: u32, direction: vec3f, mip: f32) -> vec4f  section ENIN; called for levels > 1
+//   fn glint_environment_colour_at(layer: u32, direction: vec3f, mip: f32) -> vec3f      section ENCO; called if coloured
+//   fn glint_environment_albedo_at(place: vec2f) -> vec4f                                section ENAL, clamped to its edge, place 0 to 1
+
+#import counting::eval
+
+// Shape of the cubes, from the section ENPP.
+struct GlintEnvironment {
+    // Radiance of each level.
+    level: GlintLevels,
+    // 1 for the levels that there are, else 0.
+    present: GlintLevels,
+    levels: u32,
+    mips: u32,
+    coloured: u32,
+    radiance_scale: f32,
+}
+
+// A point of a glittering surface as a pixel sees it, in the environment's frame.
+struct GlintSurface {
+    normal: vec3f,
+    // To the eye.
+    view: vec3f,
+    // GGX roughness.
+    alpha: f32,
+    // Reflectance at normal incidence.
+    f0: vec3f,
+    // Facets under the pixel, any number >= 0.
+    facets: f32,
+}
+
+// The smooth reflection and the chances of every level.
+struct GlintChances {
+    smooth_radiance: vec3f,
+    // Chance that a facet reflects each level.
+    p: GlintLevels,
+    // Sums of L p and L^2 p over the levels.
+    moments: vec2f,
+    // How far glints vary from the smooth reflection, 0 to 1, against what the levels give.
+    spread: f32,
+    // Where the smooth reflection looks.
+    mirror: vec3f,
+    mip: f32,
+}
+
+// Mip of a roughness, 0 to mips - 1.
+fn glint_environment_mip(environment: GlintEnvironment, alpha: f32) -> f32 {
+    let perceptual = sqrt(clamp(alpha, 0.0, 1.0));
+    let mip = perceptual * (2.0 - perceptual) * f32(max(environment.mips, 2u) - 1u);
+    return min(mip, f32(environment.mips - 1u));
+}
+
+// Scale and bias of f0, visible reflecting area and whole facet area.
+fn glint_environment_areas(cos_o: f32, alpha: f32) -> vec4f {
+    return glint_environment_albedo_at(vec2f(clamp(cos_o, 0.0, 1.0), sqrt(clamp(alpha, 0.0, 1.0))));
+}
+
+// Image-based light without glints: the smooth reflection (Eq. 11).
+fn glint_environment_smooth(environment: GlintEnvironment, surface: GlintSurface) -> vec3f {
+    let cos_o = dot(surface.normal, surface.view);
+    let mirror = 2.0 * cos_o * surface.normal - surface.view;
+    let areas = glint_environment_areas(cos_o, surface.alpha);
+    let radiance = glint_environment_radiance_at(mirror, glint_environment_mip(environment, surface.alpha));
+    return (surface.f0 * areas.x + areas.y) * radiance.rgb;
+}
+
+fn glint_levels_sum(levels: GlintLevels, count: u32) -> f32 {
+    var sum = dot(levels.a, vec4f(1.0));
+    if count > 4u {
+        sum += dot(levels.b, vec4f(1.0));
+    }
+    if count > 8u {
+        sum += dot(levels.c, vec4f(1.0)) + dot(levels.d, vec4f(1.0));
+    }
+    return sum;
+}
+
+// Sum of the products of two lists of the first `count` levels.
+fn glint_levels_dot(x: GlintLevels, y: GlintLevels, count: u32) -> f32 {
+    var sum = dot(x.a, y.a);
+    if count > 4u {
+        sum += dot(x.b, y.b);
+    }
+    if count > 8u {
+        sum += dot(x.c, y.c) + dot(x.d, y.d);
+    }
+    return sum;
+}
+
+// Probabilities that a facet reflects each level (Eq. 15 and 21), with `visible` = E_D / D_H. Level 0 also takes the facets that
+// reflect nothing.
+fn glint_level_probabilities(environment: GlintEnvironment, direction: vec3f, mip: f32, visible: f32) -> GlintLevels {
+    let count = environment.levels;
+    var p = GlintLevels(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0));
+    if count == 1u {
+        p.a.x = visible;
+        return p;
+    }
+    // Component c of layer l is level 4 l + c + 1, so lists are shifted by one.
+    let first = glint_environment_indicators_at(0u, direction, mip) * visible;
+    p.a = vec4f(0.0, first.xyz) * environment.present.a;
+    if count > 4u {
+        var second = vec4f(0.0);
+        if count > 5u {
+            second = glint_environment_indicators_at(1u, direction, mip) * visible;
+        }
+        p.b = vec4f(first.w, second.xyz) * environment.present.b;
+        if count > 8u {
+            var third = vec4f(0.0);
+            var fourth = vec4f(0.0);
+            if count > 9u {
+                third = glint_environment_indicators_at(2u, direction, mip) * visible;
+            }
+            if count > 13u {
+                fourth = glint_environment_indicators_at(3u, direction, mip) * visible;
+            }
+            p.c = vec4f(second.w, third.xyz) * environment.present.c;
+            p.d = vec4f(third.w, fourth.xyz) * environment.present.d;
+        }
+    }
+    p.a.x = max(1.0 - glint_levels_sum(p, count), 0.0);
+    return p;
+}
+
+// Mean and second moment of what one facet reflects.
+fn glint_facet_moments(environment: GlintEnvironment, p: GlintLevels) -> vec2f {
+    let level = environment.level;
+    let light = GlintLevels(p.a * level.a, p.b * level.b, p.c * level.c, p.d * level.d);
+    let count = environment.levels;
+    return vec2f(glint_levels_sum(light, count), glint_levels_dot(light, level, count));
+}
+
+// Factor that brings the variance of the levels to that of the unsorted facets; `square` is the filtered second moment.
+fn glint_spread_factor(moments: vec2f, square: f32, visible: f32) -> f32 {
+    let mean2 = moments.x * moments.x;
+    let of_levels = moments.y - mean2;
+    if of_levels > 0.0 {
+        return sqrt(clamp((visible * square - mean2) / of_levels, 0.0, 1.0));
+    }
+    return 1.0;
+}
+
+// The smooth reflection and the chances of the levels at a surface point.
+fn glint_chances(environment: GlintEnvironment, surface: GlintSurface) -> GlintChances {
+    let cos_o = dot(surface.normal, surface.view);
+    let mirror = 2.0 * cos_o * surface.normal - surface.view;
+    let mip = glint_environment_mip(environment, surface.alpha);
+    let areas = glint_environment_areas(cos_o, surface.alpha);
+    let radiance = glint_environment_radiance_at(mirror, mip);
+    let visible = min(areas.z / areas.w, 1.0);
+    let p = glint_level_probabilities(environment, mirror, mip, visible);
+    let moments = glint_facet_moments(environment, p);
+    let spread = glint_spread_factor(moments, radiance.w * radiance.w, visible);
+    return GlintChances((surface.f0 * areas.x + areas.y) * radiance.rgb, p, moments, spread, mirror, mip);
+}
+
+// Drawn over expected light, channel by channel.
+fn glint_coloured_ratios(
+    environment: GlintEnvironment,
+    chances: GlintChances,
+    facets: f32,
+    drawn_levels: GlintLevels,
+) -> vec3f {
+    let level = environment.level;
+    var light = array<vec4f, 4>(level.a, level.b, level.c, level.d);
+    var counts = array<vec4f, 4>(drawn_levels.a, drawn_levels.b, drawn_levels.c, drawn_levels.d);
+    var p = array<vec4f, 4>(chances.p.a, chances.p.b, chances.p.c, chances.p.d);
+    var drawn = vec3f(0.0);
+    var expected = vec3f(0.0);
+    for (var k = 1u; k < min(environment.levels, 16u); k++) {
+        let colour = glint_environment_colour_at(k - 1u, chances.mirror, chances.mip) * light[k / 4u][k % 4u];
+        drawn += colour * counts[k / 4u][k % 4u];
+        expected += colour * (p[k / 4u][k % 4u] * facets);
+    }
+    return select(vec3f(1.0), drawn / max(expected, vec3f(1.0e-37)), expected > vec3f(0.0));
+}
+
+// Radiance towards the eye of one draw of facets (Eq. 17), linear RGB; of chances that glint_chances has found.
+fn glint_environment_draw(
+    environment: GlintEnvironment,
+    chances: GlintChances,
+    facets: f32,
+    words: GlintWords,
+) -> vec3f {
+    var p = chances.p;
+    if environment.levels == 1u {
+        // A single level needs a second one for the facets that reflect nothing.
+        p.a.y = 1.0 - p.a.x;
+    }
+    let counts = glint_multinomial(facets, p, environment.levels, words);
+    let share = 1.0 / (facets * chances.moments.x);
+    let there = glint_levels_sum(counts, environment.levels) * chances.moments.x * share;
+    var ratios = vec3f(0.0);
+    if environment.coloured != 0u {
+        ratios = glint_coloured_ratios(environment, chances, facets, counts);
+    } else {
+        let light = glint_levels_dot(environment.level, counts, environment.levels);
+        ratios = vec3f(light * share);
+    }
+    let drawn = max(vec3f(there) + chances.spread * (ratios - there), vec3f(0.0));
+    // Without light or facets there is nothing to draw.
+    let dark = select(vec3f(0.0), vec3f(1.0), facets > 0.0);
+    return chances.smooth_radiance * select(dark, drawn, (chances.moments.x > 0.0) & (facets > 0.0));
+}
+
+// Radiance towards the eye of one draw of facets, linear RGB; `words` are the random words of the pixel.
+fn glint_environment_glints(environment: GlintEnvironment, surface: GlintSurface, words: GlintWords) -> vec3f {
+    return glint_environment_draw(environment, glint_chances(environment, surface), surface.facets, words);
+}

@@ -1,0 +1,167 @@
+//! Checks the contents of environment sections: what a sampler and a counting model rely on.
+
+use crate::bytes::{f16_at, f32_at, u16_at};
+use crate::container::full_mip_count;
+use crate::environment::{
+    ALBEDO, COLOURS, EnvironmentParams, INDICATORS, MAX_FACE_SIZE, MAX_LEVELS, PARAMS, RADIANCE, Storage,
+};
+use crate::issue::{Issue, IssueCode};
+use crate::sections::{Loaded, Sections};
+
+/// Checks every environment.
+pub(crate) fn check(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
+    for section in sections.of_kind(PARAMS) {
+        check_environment(sections, section, issues);
+    }
+    sections.report_orphans(&[RADIANCE, INDICATORS, COLOURS, ALBEDO], PARAMS, issues);
+}
+
+fn check_environment(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec<Issue>) {
+    let radiance = sections.need(RADIANCE, section, issues);
+    let albedo = sections.need(ALBEDO, section, issues);
+    let Some(params) = section.parameters::<EnvironmentParams>(issues) else { return };
+    if let Err(why) = check_parameters(&params) {
+        issues.push(section.error(IssueCode::EnvironmentParameters, why));
+        return;
+    }
+    if let Err(why) = check_levels(&params.levels) {
+        issues.push(section.error(IssueCode::EnvironmentLevels, why));
+        return;
+    }
+    let shape = IssueCode::EnvironmentShape;
+    if let Some(radiance) = radiance
+        && radiance.expect(shape, params.radiance_resource(), issues)
+    {
+        check_values(radiance, params.storage == Storage::F32, IssueCode::EnvironmentRadiance, issues);
+    }
+    if let Some(albedo) = albedo
+        && albedo.expect(shape, params.albedo_resource(), issues)
+    {
+        check_values(albedo, false, IssueCode::EnvironmentAlbedo, issues);
+    }
+    if params.levels.len() > 1
+        && let Some(indicators) = sections.need(INDICATORS, section, issues)
+        && indicators.expect(shape, params.indicators_resource(), issues)
+    {
+        check_indicators(indicators, &params, issues);
+    }
+    if params.coloured
+        && let Some(colours) = sections.need(COLOURS, section, issues)
+    {
+        // Every bit pattern of the shared-exponent format is a finite colour that is not negative.
+        colours.expect(shape, params.colours_resource(), issues);
+    }
+}
+
+fn check_parameters(params: &EnvironmentParams) -> Result<(), String> {
+    let size = params.face_size;
+    if !(size.is_power_of_two() && size <= MAX_FACE_SIZE) {
+        return Err(format!("expected a face size that is a power of two up to {MAX_FACE_SIZE}, found {size}"));
+    }
+    let mips = params.roughness.len();
+    if mips == 0 || mips > full_mip_count(size, size) as usize {
+        return Err(format!("expected 1 to {} mips, found {mips}", full_mip_count(size, size)));
+    }
+    let rises = params.roughness[0] == 0.0 && params.roughness.windows(2).all(|pair| pair[0] < pair[1]);
+    if !rises || params.roughness.iter().any(|alpha| !(0.0..=1.0).contains(alpha)) {
+        return Err(String::from("expected roughnesses that rise from 0 and end at 1 or below"));
+    }
+    if !(1..=1024).contains(&params.albedo_size) {
+        return Err(format!("expected an albedo table of 1 to 1024 texels square, found {}", params.albedo_size));
+    }
+    let positive = |value: f64| value > 0.0 && value.is_finite();
+    if !positive(params.radiance_scale) || !positive(params.max_error) {
+        return Err(String::from("expected a positive radiance scale and error"));
+    }
+    if params.coloured && params.levels.len() < 2 {
+        return Err(String::from("expected two levels or more where levels have colours"));
+    }
+    let measured = &params.measured;
+    let errors = measured.mips.iter().flat_map(|mip| [mip.rmse, mip.worst]);
+    let all = errors.chain([measured.energy, measured.second_moment]).chain(params.mean_radiance);
+    let all = all.chain(measured.rounding.iter().copied());
+    for value in all {
+        if !(value >= 0.0 && value.is_finite()) {
+            return Err(format!("expected means and errors that are finite and not negative, found {value}"));
+        }
+    }
+    Ok(())
+}
+
+fn check_levels(levels: &[f64]) -> Result<(), String> {
+    if !(1..=MAX_LEVELS).contains(&levels.len()) {
+        return Err(format!("expected 1 to {MAX_LEVELS} levels, found {}", levels.len()));
+    }
+    if !levels.iter().all(|level| *level >= 0.0 && level.is_finite()) {
+        return Err(String::from("expected finite levels that are not negative"));
+    }
+    if levels.len() > 1 && levels[0] != 0.0 {
+        return Err(format!("expected a darkest level of 0, found {}", levels[0]));
+    }
+    if levels.windows(2).any(|pair| pair[0] >= pair[1]) {
+        return Err(String::from("expected levels that rise"));
+    }
+    Ok(())
+}
+
+/// One stored number.
+fn number(bytes: &[u8]) -> f32 {
+    if bytes.len() == 2 { f16_at(bytes, 0) } else { f32_at(bytes, 0) }
+}
+
+/// Reports the first number that is negative or not finite.
+fn check_values(section: Loaded<'_>, wide: bool, code: IssueCode, issues: &mut Vec<Issue>) {
+    let bytes = if wide { 4 } else { 2 };
+    for (i, chunk) in section.payload.chunks_exact(bytes).enumerate() {
+        let value = number(chunk);
+        if !(value >= 0.0 && value.is_finite()) {
+            let message = format!(
+                "component {} of texel {}: expected a finite number that is not negative, found {value}",
+                i % 4,
+                i / 4
+            );
+            issues.push(section.error(code, message));
+            return;
+        }
+    }
+}
+
+/// Reports the first texel whose indicators are no shares of a whole. What is left of 1 is the darkest level's.
+fn check_indicators(section: Loaded<'_>, params: &EnvironmentParams, issues: &mut Vec<Issue>) {
+    let layers = params.indicator_layers() as usize;
+    let bytes = section.payload;
+    let component = if params.storage == Storage::F32 { 4 } else { 2 };
+    let value = |texel: usize, c: usize| {
+        let at = (4 * texel + c) * component;
+        match params.storage {
+            Storage::Unorm16 => f64::from(u16_at(bytes, at)) / 65535.0,
+            _ => f64::from(number(&bytes[at..at + component])),
+        }
+    };
+    let mut first = 0;
+    for mip in 0..params.mips() {
+        let texels = 6 * ((params.face_size >> mip).max(1) as usize).pow(2);
+        for texel in 0..texels {
+            let mut sum = 0.0;
+            let mut sound = true;
+            for layer in 0..layers {
+                for c in 0..4 {
+                    let share = value(first + layer * texels + texel, c);
+                    let used = 4 * layer + c + 1 < params.levels.len();
+                    sound &= share >= 0.0 && (used || share == 0.0);
+                    sum += share;
+                }
+            }
+            // Sixteen-bit UNORM adds up in units of 1/65535, which f64 rounds.
+            if !sound || sum > 1.0 + 1e-12 {
+                let message = format!(
+                    "texel {texel} of mip {mip}: expected shares that are not negative and add up to 1 at most, found \
+                     a sum of {sum}"
+                );
+                issues.push(section.error(IssueCode::EnvironmentIndicators, message));
+                return;
+            }
+        }
+        first += layers * texels;
+    }
+}
