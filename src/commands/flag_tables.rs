@@ -29,7 +29,8 @@ pub fn renew(page: &str, programs: &[Command]) -> Result<String, Failure> {
         let name_end = rest[name_at..].find(BEGIN.1).ok_or_else(|| bad(format!("expected {BEGIN:?}")))? + name_at;
         let name = &rest[name_at..name_end];
         let body = name_end + BEGIN.1.len();
-        let end = rest[body..].find(END).ok_or_else(|| bad(format!("expected {END} after the flags of {name}")))? + body;
+        let end =
+            rest[body..].find(END).ok_or_else(|| bad(format!("expected {END} after the flags of {name}")))? + body;
         let tables = tables_of(name, programs).ok_or_else(|| bad(format!("there is no command {name}")))?;
         out.push_str(&rest[..body]);
         out.push('\n');
@@ -88,7 +89,8 @@ fn tables_of(name: &str, programs: &[Command]) -> Option<String> {
 
 /// A flag, or what a command takes without one, as a row.
 fn row(arg: &Arg) -> String {
-    let value = arg.get_value_names().unwrap_or_default().iter().map(|name| name.as_str()).collect::<Vec<_>>().join(" ");
+    let value =
+        arg.get_value_names().unwrap_or_default().iter().map(|name| name.as_str()).collect::<Vec<_>>().join(" ");
     let many = matches!(arg.get_action(), ArgAction::Append) && arg.is_positional();
     let long = arg.get_long().map(|long| match takes_value(arg) {
         true => format!("`--{long} {value}`"),
@@ -159,7 +161,8 @@ mod tests {
 
     fn programs() -> [Command; 1] {
         let many = Arg::new("maps").value_name("MAP").action(ArgAction::Append).help("Maps").required(true);
-        let error = Arg::new("error").long("max-error").value_name("E").help("Error; fails the bake [default: by --preset]");
+        let error =
+            Arg::new("error").long("max-error").value_name("E").help("Error; fails the bake [default: by --preset]");
         let kind = Arg::new("kind").long("kind").short('k').help("Kind").value_parser(["a", "b"]).default_value("a");
         let loud = Arg::new("loud").long("loud").action(ArgAction::SetTrue).help("Or A|B").help_heading("Run");
         let common = Arg::new("quiet").long("quiet").action(ArgAction::SetTrue).help("Say less").help_heading(COMMON);
@@ -187,7 +190,9 @@ mod tests {
     #[test]
     fn a_page_of_tables_renews_to_itself() {
         let page = page(&programs());
-        assert!(page.contains(&format!("## glint bake\n\n<!-- flags of glint bake -->\n{BAKE}<!-- end of flags -->\n")));
+        assert!(
+            page.contains(&format!("## glint bake\n\n<!-- flags of glint bake -->\n{BAKE}<!-- end of flags -->\n"))
+        );
         assert_eq!(renew(&page, &programs()).unwrap(), page);
     }
 

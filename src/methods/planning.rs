@@ -33,14 +33,14 @@ pub struct Request<'a> {
     pub budget: f64,
     /// Where the pack will lie.
     pub output: &'a Path,
-    /// Names of the flags that the project gives itself; they are not for the plan to choose.
-    pub given: &'a [String],
+    /// Names of the flags that the project fixes; they are not for the plan to choose.
+    pub fixed: &'a [String],
 }
 
 impl<'a> Request<'a> {
-    /// Whether the project gives a flag itself.
-    pub fn gives(&self, flag: &str) -> bool {
-        self.given.iter().any(|given| given == flag)
+    /// Whether the project fixes a flag.
+    pub fn fixes(&self, flag: &str) -> bool {
+        self.fixed.iter().any(|fixed| fixed == flag)
     }
 
     /// The surface that is seen.
@@ -67,7 +67,7 @@ impl<'a> Request<'a> {
 
     /// The project's flags, of which some may be chosen.
     pub fn choice<A>(&self, args: A) -> Choice<'a, A> {
-        Choice { args, options: OptionList::default(), given: self.given }
+        Choice { args, options: OptionList::default(), fixed: self.fixed }
     }
 }
 
@@ -77,14 +77,14 @@ pub struct Choice<'a, A> {
     pub args: A,
     /// Those that were chosen, as they are typed.
     pub options: OptionList,
-    given: &'a [String],
+    fixed: &'a [String],
 }
 
 impl<A> Choice<'_, A> {
-    /// Chooses the value of a flag, unless the project gives it itself. `text` is the value as it is typed, and `set`
+    /// Chooses the value of a flag, unless the project fixes it. `text` is the value as it is typed, and `set`
     /// puts it into the flags.
     pub fn choose(&mut self, flag: &str, text: impl ToString, set: impl FnOnce(&mut A)) {
-        if !self.given.iter().any(|given| given == flag) {
+        if !self.fixed.iter().any(|fixed| fixed == flag) {
             set(&mut self.args);
             self.options.push(flag, text);
         }

@@ -34,7 +34,7 @@ pub fn measure(
     let planning = planning.ok_or_else(unplanned)?;
     let pack = open(path)?;
     let budget = subject.error().unwrap_or(scene.error);
-    let error = bake.measure(&pack, &Request { scene, subject, budget, output: path, given: &[] })?;
+    let error = bake.measure(&pack, &Request { scene, subject, budget, output: path, fixed: &[] })?;
     let bytes = std::fs::metadata(path).map_or(0, |meta| meta.len());
     Ok(Measured { measure: planning.measure, error, budget, bytes })
 }

@@ -73,8 +73,8 @@ impl Methods {
         let mut line = CommandLine::default();
         for option in options {
             let key = option.entry.key;
-            let wrong = |why: String| OptionError { key: Some(key.to_owned()), why };
-            for value in self.values(method, option.entry, folder).map_err(wrong)? {
+            let refuse = |why: String| OptionError { key: Some(key.to_owned()), why };
+            for value in self.values(method, option.entry, folder).map_err(refuse)? {
                 match (key, value) {
                     (INPUT, Value::Text(text)) => line.inputs.push(text),
                     (_, Value::Text(text)) => line.flags.push((key.to_owned(), typed(key, &text))),

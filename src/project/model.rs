@@ -47,7 +47,7 @@ pub struct CommandLine {
 
 impl CommandLine {
     /// Names of the flags.
-    pub fn given(&self) -> Vec<String> {
+    pub fn keys(&self) -> Vec<String> {
         self.flags.iter().map(|(key, _)| key.clone()).collect()
     }
 

@@ -9,7 +9,9 @@ use crate::methods::method::provenance;
 use crate::pack;
 use crate::progress::Stages;
 use crate::quantities::kib;
-use glint_bake_core::environment::{self, Environment, EnvironmentImage, quality, sections};
+use glint_bake_core::environment::{
+    Environment, EnvironmentImage, EnvironmentOptions, bake as bake_environment, quality, sections,
+};
 use glint_bake_core::error::BakeError;
 use glint_bake_core::progress::Silent;
 use glint_formats::Codec;
@@ -22,8 +24,7 @@ const SMALLER: &str = "give a smaller --face-size or fewer --levels";
 
 /// Checks everything, then bakes.
 pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Failure> {
-    let options = args.options();
-    options.validate()?;
+    let options = checked_options(args)?;
     let delivery = args.delivery();
     delivery.check()?;
     delivery.check_size(options.texture_bytes(), SMALLER)?;
@@ -54,8 +55,8 @@ pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Fai
         return Ok(None);
     }
     let stages = Stages::new(terminal);
-    let environment = environment::bake(&loaded.image, loaded.negative_pixels, &options, &stages)
-        .map_err(|error| Failure::bake(&args.input, &error))?;
+    let environment =
+        bake_environment(&loaded.image, &options, &stages).map_err(|error| Failure::bake(&args.input, &error))?;
     warn_of_rounding(&environment.params, &args.input, terminal);
     let bytes = sealed(args, &loaded, &environment)?;
     Ok(Some(FinishedPack { bytes, smaller: SMALLER }))
@@ -77,13 +78,19 @@ fn warn_of_rounding(params: &EnvironmentParams, input: &Path, terminal: Terminal
 
 /// A bake that is only looked at: image and environment, and the bytes that the pack would have.
 pub fn draft(args: &Args) -> Result<((EnvironmentImage, Environment), u64), Failure> {
-    let options = args.options();
-    options.validate()?;
+    let options = checked_options(args)?;
     let loaded = load_environment(&args.input, args.run.max_memory)?;
-    let environment = environment::bake(&loaded.image, loaded.negative_pixels, &options, &Silent)
-        .map_err(|error| Failure::bake(&args.input, &error))?;
+    let environment =
+        bake_environment(&loaded.image, &options, &Silent).map_err(|error| Failure::bake(&args.input, &error))?;
     let bytes = sealed(args, &loaded, &environment)?.len() as u64;
     Ok(((loaded.image, environment), bytes))
+}
+
+/// The options, once they are known to make sense. Flags have the names of the options.
+fn checked_options(args: &Args) -> Result<EnvironmentOptions, Failure> {
+    let options = args.options();
+    options.validate().map_err(|error| Failure::usage(format!("--{error}")))?;
+    Ok(options)
 }
 
 /// The bytes of the pack.

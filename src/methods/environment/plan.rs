@@ -6,8 +6,9 @@ use crate::exit::Failure;
 use crate::methods::bake::Candidates;
 use crate::methods::planning::{Request, USED};
 use glam::DVec3;
-use glint_bake_core::environment::eval::environment_radiance;
+use glint_bake_core::environment::eval::environment_mip;
 use glint_bake_core::environment::image::luminance;
+use glint_bake_core::environment::lookup::radiance_at;
 use glint_bake_core::environment::reference::filtered;
 use glint_bake_core::environment::{Environment, EnvironmentImage, sections};
 use glint_bake_core::rng::{ItemRng, Purpose};
@@ -42,7 +43,7 @@ pub fn candidates(args: &Args, request: &Request<'_>) -> Result<Candidates, Fail
         let mut choice = request.choice(base.clone());
         choice.choose("face-size", size, |args| args.face_size = size);
         // A number of levels leaves no error to ask for.
-        if !request.gives("levels") {
+        if !request.fixes("levels") {
             choice.choose("levels", LEVELS_AUTO, |args| args.levels = 0);
             choice.choose("max-moment-error", request.budget, |args| args.max_moment_error = request.budget);
         }
@@ -90,7 +91,8 @@ fn error(environment: &Environment, lookups: &[Lookup]) -> f64 {
     let of = |first: usize| {
         let (mut errors, mut power) = (0.0, 0.0);
         for lookup in lookups.iter().skip(first).step_by(ROUGHNESSES as usize) {
-            let found = environment_radiance(environment, lookup.direction.as_vec3(), lookup.alpha as f32);
+            let mip = environment_mip(environment, lookup.alpha as f32);
+            let found = radiance_at(environment, lookup.direction.as_vec3(), mip);
             let found = luminance([0, 1, 2].map(|c| f64::from(found[c])));
             errors += (found - lookup.luminance).powi(2);
             power += lookup.luminance.powi(2);

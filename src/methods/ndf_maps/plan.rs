@@ -75,7 +75,7 @@ pub fn candidates(args: &Args, request: &Request<'_>) -> Result<Candidates, Fail
     drop(made);
     let mut found = Candidates::new(line(&footprints));
     // A preset says both, so that there is nothing to choose but the tiles.
-    let preset = request.gives("preset");
+    let preset = request.fixes("preset");
     let settings = if preset { &SETTINGS[..1] } else { &SETTINGS[..] };
     for setting in settings {
         let choice = asked(*setting, tile, !preset);

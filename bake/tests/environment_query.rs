@@ -1,8 +1,8 @@
 //! Random words of surface cells: uniform at every place, independent of each other, continuous, and coherent where rare.
 
 use glam::Vec2;
-use glint_bake_core::environment::cells::{
-    corner_bits, footprint_area, footprint_facets, surface_cells, surface_lod, surface_word, surface_words,
+use glint_bake_core::environment::query::{
+    footprint_area, footprint_facets, surface_bits, surface_cells, surface_lod, surface_word, surface_words,
 };
 use glint_bake_core::rng::{ItemRng, Purpose};
 
@@ -16,7 +16,7 @@ fn words_are_the_race_of_the_corners_to_their_digits() {
         let cells = surface_cells(position, 4.0 * rng.unit() as f32 - 2.0, seed);
         let weights = cells.inverse_weights.map(|inverse| 1.0 / f64::from(inverse) / 4_294_967_296.0);
         assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-6, "{cells:?}");
-        let numbers = cells.states.map(|state| (f64::from(corner_bits(state, 1)) + 0.5) / 4_294_967_296.0);
+        let numbers = cells.states.map(|state| (f64::from(surface_bits(state, 1)) + 0.5) / 4_294_967_296.0);
         let all = numbers.iter().zip(weights).map(|(h, w)| (h / w, w));
         let (least, weight) = all.fold((f64::INFINITY, 1.0), |a, b| if b.0 < a.0 { b } else { a });
         let exact = -libm::expm1(weights.iter().map(|w| libm::log1p(-w * least)).sum::<f64>());

@@ -1,7 +1,6 @@
 //! A baked environment: its parameters and the bytes of its textures, and how a texel is found in them.
 
-use super::quantise::{decoded, from_shared_exponent};
-use glint_formats::environment::{EnvironmentParams, Storage};
+use glint_formats::environment::{EnvironmentParams, EnvironmentUniform, Storage};
 use half::f16;
 
 /// A baked environment. Textures are in the order of the pack: mip, layer, face, row, column.
@@ -9,6 +8,8 @@ use half::f16;
 pub struct Environment {
     /// Parameters.
     pub params: EnvironmentParams,
+    /// What a shader binds of them.
+    pub uniform: EnvironmentUniform,
     /// Prefiltered radiance and root mean square luminance, RGBA.
     pub radiance: Vec<u8>,
     /// Indicators of levels from 1 on, four a layer; empty with one level.
@@ -79,4 +80,19 @@ impl Environment {
         let at = 4 * (row * self.params.albedo_size + column) as usize;
         [0, 1, 2, 3].map(|c| f16::from_bits(self.albedo[at + c]).to_f32())
     }
+}
+
+/// What a GPU reads.
+pub fn decoded(bits: u32, storage: Storage) -> f64 {
+    match storage {
+        Storage::F16 => f16::from_bits(bits as u16).to_f64(),
+        Storage::F32 => f64::from(f32::from_bits(bits)),
+        Storage::Unorm16 => f64::from(bits) / 65535.0,
+    }
+}
+
+/// The colour that E5B9G9R9 bits stand for.
+pub(super) fn from_shared_exponent(bits: u32) -> [f32; 3] {
+    let unit = libm::ldexpf(1.0, (bits >> 27) as i32 - 24);
+    [0, 9, 18].map(|shift| (bits >> shift & 511) as f32 * unit)
 }

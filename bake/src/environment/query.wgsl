@@ -1,6 +1,6 @@
 // Random words of a place on a surface: what a pixel's draw reads, so that glints stay put when the camera moves.
 // Kneiphof and Klein 2025, "Real-Time Image-based Lighting of Glints", section 3.3, in place of the grids of Deliot and Belcour
-// 2023. Twin of glint-bake-core environment/cells.rs, where the deviation is derived: words are blended, not counts, so one
+// 2023. Twin of glint-bake-core environment/query.rs, where the deviation is derived: words are blended, not counts, so one
 // draw a pixel has the distribution of its facets at every place.
 //
 // Pure functions, no accessors. Places in surface units, those of the density.
@@ -142,7 +142,7 @@ fn glint_surface_cells(position: vec2f, lod: f32, seed: u32) -> GlintSurfaceCell
 }
 
 // Words `index` to `index` + 3 of a place, from 0 to 1: uniform, and small where a corner has a rare number.
-fn glint_surface_four_words(cells: GlintSurfaceCells, index: u32) -> vec4f {
+fn glint_surface_word(cells: GlintSurfaceCells, index: u32) -> vec4f {
     // Positive numbers have the order of their bits. As integers, no device minds what is not a number.
     let a = bitcast<vec4u>(vec4f(glint_surface_bits(cells.a, index)) * cells.inverse_weights.x);
     let b = bitcast<vec4u>(vec4f(glint_surface_bits(cells.b, index)) * cells.inverse_weights.y);
@@ -158,13 +158,13 @@ fn glint_surface_four_words(cells: GlintSurfaceCells, index: u32) -> vec4f {
 // The words that a multinomial draw of `levels` levels reads: rare bright facets are where a corner has a rare number.
 fn glint_surface_words(cells: GlintSurfaceCells, levels: u32) -> GlintWords {
     let none = vec4f(0.0);
-    var words = GlintWords(glint_surface_four_words(cells, 0u), none, none, none);
+    var words = GlintWords(glint_surface_word(cells, 0u), none, none, none);
     if levels > 4u {
-        words.b = glint_surface_four_words(cells, 4u);
+        words.b = glint_surface_word(cells, 4u);
     }
     if levels > 8u {
-        words.c = glint_surface_four_words(cells, 8u);
-        words.d = glint_surface_four_words(cells, 12u);
+        words.c = glint_surface_word(cells, 8u);
+        words.d = glint_surface_word(cells, 12u);
     }
     return words;
 }

@@ -1,4 +1,4 @@
-//! Random words of a place on a surface, f32, as in WGSL: what a pixel's draw reads, so that glints stay put when the
+//! Random words of a place on a surface, f32, as in `query.wgsl`: what a pixel's draw reads, so that glints stay put when the
 //! camera moves.
 //!
 //! Paper: Kneiphof and Klein 2025, section 3.3, which takes the grids of Deliot and Belcour 2023: facets are shared among
@@ -64,31 +64,31 @@ pub fn footprint_facets(area: f32, density: f32) -> f32 {
 }
 
 /// Mixes 32 bits in one round, a bijection: enough for the upper bits of sums of random numbers.
-fn mix(value: u32) -> u32 {
-    let value = (value ^ (value >> 16)).wrapping_mul(0xbb67_ae85);
-    value ^ (value >> 15)
-}
-
-/// Seed of a level's grid. Surfaces are numbered one after the other: less mixed seeds showed as a shift of the mean over a thousand.
-fn level_seed(level: i32, seed: u32) -> u32 {
-    mix_bits(seed.wrapping_add((level as u32).wrapping_mul(0x9e37_79b9)))
-}
-
-/// 32 random bits of a corner, draw `index`. Half a round is enough: what it leaves the lower bits unmixed with, the upper ones, is
-/// mixed into these.
-pub fn corner_bits(state: CellState, index: u32) -> u32 {
-    let value = state.a.wrapping_add((state.b | 1).wrapping_mul(index.wrapping_add(1)));
-    (value ^ (value >> 16)).wrapping_mul(0xbb67_ae85)
+fn surface_mix(value: u32) -> u32 {
+    let v = (value ^ (value >> 16)).wrapping_mul(0xbb67_ae85);
+    v ^ (v >> 15)
 }
 
 /// Random state of the corner `offset` from `base` on the fine or the coarse grid: two Feistel rounds, a bijection of the
 /// place. That of neighbours differs, and each draw mixes once more.
-fn corner_state(base: [i32; 2], offset: [i32; 2], coarse: bool, [fine, wide]: [u32; 2]) -> CellState {
+fn surface_corner(base: [i32; 2], offset: [i32; 2], coarse: bool, seeds: [u32; 2]) -> CellState {
     let scale = if coarse { 1 } else { 2 };
-    let [x, y] = [0, 1].map(|i| base[i].wrapping_mul(scale).wrapping_add(offset[i]) as u32);
-    let seed = if coarse { wide } else { fine };
-    let a = x.wrapping_add(mix(y.wrapping_add(seed)));
-    CellState { a, b: y.wrapping_add(mix(a ^ seed)) }
+    let at = [0, 1].map(|i| base[i].wrapping_mul(scale).wrapping_add(offset[i]) as u32);
+    let seed = if coarse { seeds[1] } else { seeds[0] };
+    let a = at[0].wrapping_add(surface_mix(at[1].wrapping_add(seed)));
+    CellState { a, b: at[1].wrapping_add(surface_mix(a ^ seed)) }
+}
+
+/// 32 random bits of a corner, draw `index`. Half a round is enough: what it leaves the lower bits unmixed with, the upper ones, is
+/// mixed into these.
+pub fn surface_bits(state: CellState, index: u32) -> u32 {
+    let value = state.a.wrapping_add((state.b | 1).wrapping_mul(index.wrapping_add(1)));
+    (value ^ (value >> 16)).wrapping_mul(0xbb67_ae85)
+}
+
+/// Seed of a level's grid. Surfaces are numbered one after the other: less mixed seeds showed as a shift of the mean over a thousand.
+fn surface_seed(level: i32, seed: u32) -> u32 {
+    mix_bits(seed.wrapping_add((level as u32).wrapping_mul(0x9e37_79b9)))
 }
 
 /// The corners around `position` (surface units) for a pixel of level `lod` ([`surface_lod`]).
@@ -117,36 +117,36 @@ pub fn surface_cells(position: Vec2, lod: f32, seed: u32) -> SurfaceCells {
     let (near_a, near_b, near_c) = (alpha >= 2.0 * t, beta >= 2.0 * t, gamma >= 2.0 * t);
     let (coarse_a, coarse_b) = (alpha >= 0.0, beta >= 0.0);
     // Weights of A′, B′, E and F in the octahedron.
-    let (a, b) = ((0.5 * alpha).clamp(0.0, t), (0.5 * beta).clamp(0.0, t));
-    let (e, f) = ((-alpha).max(0.0), (-beta).max(0.0));
+    let (wa, wb) = ((0.5 * alpha).clamp(0.0, t), (0.5 * beta).clamp(0.0, t));
+    let (we, wf) = ((-alpha).max(0.0), (-beta).max(0.0));
     let (beyond, twice) = ([1 + along[0], 1 + along[1]], [2 * along[0], 2 * along[1]]);
-    let seeds = [level_seed(level, seed), level_seed(level + 1, seed)];
+    let seeds = [surface_seed(level, seed), surface_seed(level + 1, seed)];
     // Offset, whether it is a coarse corner, weight: E or A′, F or B′, C′ or A or B, D or C.
     let corners = [
         if coarse_a {
-            ([0, 0], true, a)
+            ([0, 0], true, wa)
         } else if near_b {
             (beyond, false, c2)
         } else if near_c {
             (beyond, false, b2)
         } else {
-            (beyond, false, e)
+            (beyond, false, we)
         },
         if coarse_b {
-            (along, true, b)
+            (along, true, wb)
         } else if near_a {
             ([1, 1], false, c2)
         } else if near_c {
             ([1, 1], false, a2)
         } else {
-            ([1, 1], false, f)
+            ([1, 1], false, wf)
         },
         if near_b {
             (twice, false, beta - 2.0 * t)
         } else if near_a {
             ([0, 0], false, alpha - 2.0 * t)
         } else {
-            ([1, 1], true, t - a - b)
+            ([1, 1], true, t - wa - wb)
         },
         if near_b {
             (along, false, a2)
@@ -155,7 +155,7 @@ pub fn surface_cells(position: Vec2, lod: f32, seed: u32) -> SurfaceCells {
         } else if near_c {
             ([2, 2], false, gamma - 2.0 * t)
         } else {
-            (along, false, rest - e - f)
+            (along, false, rest - we - wf)
         },
     ];
     let weights = corners.map(|(_, _, weight)| weight.max(LEAST_WEIGHT));
@@ -163,7 +163,7 @@ pub fn surface_cells(position: Vec2, lod: f32, seed: u32) -> SurfaceCells {
     let products = [weights[0] * weights[1], weights[2] * weights[3]];
     let inverse = products.map(|product| (1.0 / 4_294_967_296.0) / product);
     SurfaceCells {
-        states: corners.map(|(offset, coarse, _)| corner_state(base, offset, coarse, seeds)),
+        states: corners.map(|(offset, coarse, _)| surface_corner(base, offset, coarse, seeds)),
         inverse_weights: [
             weights[1] * inverse[0],
             weights[0] * inverse[0],
@@ -181,7 +181,7 @@ pub fn surface_cells(position: Vec2, lod: f32, seed: u32) -> SurfaceCells {
 /// Word `index` of a place, from above 0 to 1: uniform, and small where a corner has a rare number.
 pub fn surface_word(cells: &SurfaceCells, index: u32) -> f32 {
     let all = cells.states.iter().zip(cells.inverse_weights);
-    let least = all.map(|(state, inverse)| corner_bits(*state, index) as f32 * inverse).fold(f32::INFINITY, f32::min);
+    let least = all.map(|(state, inverse)| surface_bits(*state, index) as f32 * inverse).fold(f32::INFINITY, f32::min);
     // Half a step of each corner's word: the least is a corner's as often as its weight says, and was divided by it.
     let x = least + 1.0 / 2_147_483_648.0;
     let [two, three, four] = cells.sums;
