@@ -25,7 +25,7 @@ pub struct Frame {
 
 /// What lobes are seen by: a footprint and the intrinsic roughness.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Query {
+pub(crate) struct Query {
     /// The footprint.
     pub frame: Frame,
     /// The major axis over its standard deviation: its product with an offset is in standard deviations. Zero, like
@@ -39,7 +39,7 @@ pub struct Query {
 
 /// A lobe: a 4D Gaussian over position and projected normal, without the intrinsic roughness.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lobe {
+pub(crate) struct Lobe {
     /// Weight in texels; 0 is no lobe.
     pub weight: f32,
     /// Mean position from the cell's corner, in texels.
@@ -57,7 +57,7 @@ pub struct Lobe {
 /// An ellipse around a footprint, for the ranges of x that it has at some heights. At height y above the middle its own middle
 /// lies at `slope` y, and half its width is `narrow` √(`top`² − y²).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ellipse {
+pub(crate) struct Ellipse {
     /// Centre, in texels.
     pub mean: Vec2,
     /// Half its height, in texels.
@@ -87,7 +87,7 @@ pub struct SeenLobe {
 
 /// A bilinear patch of the filtered map at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Patch {
+pub(crate) struct Patch {
     /// Projected normal.
     pub normal: Vec2,
     /// Jacobian ∂s/∂u per texel.
@@ -97,7 +97,7 @@ pub struct Patch {
 }
 
 /// Footprints are taken to be at least this wide, in texels: below it positions have no digits left.
-pub const LEAST_SIGMA: f32 = 1.0 / 4096.0;
+pub(crate) const LEAST_SIGMA: f32 = 1.0 / 4096.0;
 /// Squared distance, in standard deviations, beyond which a lobe is nothing.
 pub(crate) const CUT: f32 = 30.0;
 
@@ -118,7 +118,7 @@ impl BakedLobes {
 }
 
 /// A query from its parts.
-pub fn query(frame: Frame, roughness: f32) -> Query {
+pub(crate) fn query(frame: Frame, roughness: f32) -> Query {
     Query { frame, along: frame.axis / frame.major, across: frame.axis.perp() / frame.minor, roughness }
 }
 
@@ -263,7 +263,7 @@ pub(crate) fn box_lobe(place: &Patch, size: Vec2) -> Lobe {
 }
 
 impl SeenLobe {
-    /// Density at `s`, times the share; 0 where the squared distance from the mean is more than [`CUT`].
+    /// Density at `s`, times the share; 0 farther than √30 standard deviations from the mean.
     pub fn density(&self, s: Vec2) -> f32 {
         let d = s - self.mean;
         let q = self.inverse[0] * d.x * d.x + 2.0 * self.inverse[1] * d.x * d.y + self.inverse[2] * d.y * d.y;

@@ -45,6 +45,10 @@ pub struct LobesInfo {
     pub lobe_bytes: u64,
     /// Bytes of the normals once decompressed.
     pub normal_bytes: u64,
+    /// Bytes that a GPU holds of this map: lobes, normals and what shaders read of the parameters. Of a surface's sample too.
+    pub gpu_bytes: u64,
+    /// Intrinsic roughness up to which renderers may leave out what lies beyond the rim of the disk of normals.
+    pub rim_roughness: f32,
     /// Roughness that the error was measured at.
     pub measured_roughness: f32,
     /// Error as the bake measured it, a row a footprint size.
@@ -95,7 +99,9 @@ impl LobesInfo {
                 NormalsStorage::Unorm8 => 8,
             },
             lobe_bytes: baked.lobes.len() as u64,
-            normal_bytes: baked.normals.len() as u64,
+            normal_bytes: size_of_val(&baked.normals[..]) as u64,
+            gpu_bytes: baked.gpu_bytes() as u64,
+            rim_roughness: params.rim_roughness,
             measured_roughness: params.measured_roughness,
             measured: params.measured.clone(),
         })
@@ -150,11 +156,12 @@ impl Item for LobesInfo {
         );
         let _ = writeln!(
             out,
-            "  storage      lobes {} {}, normals {} bits {}",
+            "  storage      lobes {} {}, normals {} bits {}, on a GPU {} together",
             self.storage,
             kib(self.lobe_bytes),
             self.normal_bits,
-            kib(self.normal_bytes)
+            kib(self.normal_bytes),
+            kib(self.gpu_bytes)
         );
         for row in &self.measured {
             let _ = writeln!(
