@@ -218,7 +218,7 @@ fn what_does_not_fit_is_refused() {
     assert!(refused(&LobesOptions { seeds: 3, ..lobes() }, &synthesis(GRID)).contains("--seeds"));
     let odd = SynthesisOptions { alignment: 12, patch: 60, ..synthesis(GRID) };
     assert!(refused(&lobes(), &odd).contains("--alignment"));
-    assert!(refused(&lobes(), &SynthesisOptions { patch: 256, ..synthesis(GRID) }).contains("--patch"));
+    assert!(refused(&lobes(), &SynthesisOptions { patch: 256, ..synthesis(GRID) }).contains("patch"));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::lobes::LobesInfo;
 use super::text::{kib, percent};
 use glint_bake_core::surface::sections;
-use glint_bake_core::synthesis::measure::whole_share;
+use glint_bake_core::synthesis::quality::whole_share;
 use glint_formats::Pack;
 use glint_formats::synthesis::Layout;
 use serde::Serialize;

@@ -1,6 +1,6 @@
 //! A synthesised surface as sections of a pack, and back.
 
-use super::Synthesis;
+use super::baked::Synthesis;
 use crate::error::{BakeError, Result};
 use crate::pack_access::{names_with, parameters, records};
 use glint_formats::synthesis::{OFFSETS, PARAMS, SEAMS, SynthesisParams};
@@ -31,7 +31,7 @@ pub fn from_pack(pack: &Pack, name: &str) -> Result<Synthesis> {
             return Err(BakeError::BadInput(message));
         }
     }
-    Ok(Synthesis { params, offsets, seams })
+    Ok(Synthesis::new(params, offsets, seams))
 }
 
 /// Names of the synthesised surfaces in a pack.
