@@ -38,7 +38,14 @@ pub(super) fn reduce(
             .iter()
             .map(|lobe| {
                 let weight = lobe.weight * f64::from(count);
-                Gaussian4::of_surface(weight, middle, DMat2::IDENTITY, lobe.normal(), DMat2::ZERO, lobe.normals())
+                Gaussian4::of_surface(
+                    weight,
+                    middle,
+                    DMat2::IDENTITY,
+                    lobe.normal(),
+                    DMat2::ZERO,
+                    lobe.normal_covariance(),
+                )
             })
             .collect()
     };

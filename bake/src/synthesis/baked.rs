@@ -22,8 +22,8 @@ impl Synthesis {
         Synthesis { params, uniform, offsets, seams }
     }
 
-    /// Bytes of the sections that a GPU holds.
+    /// Bytes of the sections of offsets and seams.
     pub fn gpu_bytes(&self) -> u64 {
-        size_of::<SynthesisUniform>() as u64 + 4 * (self.params.stored_offsets() + self.params.stored_seam_words())
+        4 * (self.params.stored_offsets() + self.params.stored_seam_words())
     }
 }

@@ -107,9 +107,9 @@ impl SynthesisOptions {
             return bad(format!("alpha: expected 0 to 1, found {}", self.alpha));
         }
         if !(self.error_tolerance >= 0.0 && self.error_tolerance <= 1e6) {
-            return bad(format!("error tolerance: expected 0 to 1e6, found {}", self.error_tolerance));
+            return bad(format!("error_tolerance: expected 0 to 1e6, found {}", self.error_tolerance));
         }
-        in_range("candidates", (1, MAX_CANDIDATES), self.max_candidates)?;
+        in_range("max_candidates", (1, MAX_CANDIDATES), self.max_candidates)?;
         match self.target {
             Target::Patches { width, height } => self.validate_size(width, height),
             Target::Unbounded { colours, variants } => self.validate_tiles(colours, variants),
@@ -118,12 +118,12 @@ impl SynthesisOptions {
 
     fn validate_size(&self, width: u32, height: u32) -> Result<()> {
         if width == 0 || height == 0 {
-            return bad(format!("surface: expected one texel or more, found {width}x{height}"));
+            return bad(format!("synthesize: expected one texel or more, found {width}x{height}"));
         }
         let patches = u64::from(width.div_ceil(self.patch)) * u64::from(height.div_ceil(self.patch));
         if patches > MAX_PATCHES {
             return Err(BakeError::LimitExceeded(format!(
-                "surface of {width}x{height} texels: {patches} patches of {} texels, at most {MAX_PATCHES}; ask for a smaller \
+                "synthesize: {width}x{height} texels are {patches} patches of {} texels, at most {MAX_PATCHES}; ask for a smaller \
                  surface, larger patches, or an unbounded surface",
                 self.patch
             )));
@@ -132,7 +132,7 @@ impl SynthesisOptions {
     }
 
     fn validate_tiles(&self, colours: u32, variants: u32) -> Result<()> {
-        in_range("corner colours", (1, MAX_COLOURS), colours)?;
+        in_range("colours", (1, MAX_COLOURS), colours)?;
         in_range("variants", (1, MAX_VARIANTS), variants)?;
         let needed = 2 * (self.margin() + 2 * self.overlap);
         if !self.patch.is_multiple_of(2) || self.patch < needed {
@@ -183,20 +183,22 @@ impl SynthesisOptions {
         self.overlap.next_multiple_of(self.alignment)
     }
 
-    /// Bytes of the sections that a GPU holds, at most; exact for a grid of patches.
+    /// Bytes of the sections of offsets and seams, at most; exact for a grid of patches.
     pub fn most_bytes(&self) -> u64 {
         let words = |entries: u32| u64::from(PathShape::new(entries, self.overlap).words);
-        match self.target {
+        let (offsets, seams) = match self.target {
             Target::Patches { width, height } => {
                 let patches = u64::from(width.div_ceil(self.patch)) * u64::from(height.div_ceil(self.patch));
-                patches * 4 * (1 + 2 * words(self.patch + self.overlap))
+                (patches, patches * 2 * words(self.patch + self.overlap))
             }
             Target::Unbounded { colours, variants } => {
                 let tiles = u64::from(colours).pow(4) * u64::from(variants);
                 let pairs = u64::from(colours).pow(2) * 2 * words(2 * (self.margin() + self.overlap));
-                4 * (u64::from(colours) + tiles + pairs + tiles * 4 * words(self.patch))
+                (u64::from(colours) + tiles, pairs + tiles * 4 * words(self.patch))
             }
-        }
+        };
+        // Buffers are a multiple of 16 bytes, and not empty.
+        4 * (offsets.next_multiple_of(4) + seams.max(1).next_multiple_of(4))
     }
 
     /// Parameters of a surface of a sample of this size with this layout, not yet measured.

@@ -13,8 +13,6 @@ use serde::{Deserialize, Serialize};
 
 /// Parameters of a synthesis: [`SynthesisParams`], bincode.
 pub const PARAMS: FourCc = FourCc(*b"SYPP");
-/// What a look-up needs to know of the parameters, as shaders read it: uniform buffer, one [`SynthesisUniform`], stride 64.
-pub const UNIFORM: FourCc = FourCc(*b"SYUB");
 /// Patch offsets: buffer of two u16 (x, y), stride 4: the sample texel at a patch's texel (0, 0).
 ///
 /// [`Layout::Patches`]: row by row. [`Layout::CornerTiles`]: first one a corner colour, then one a tile and variant.
@@ -112,7 +110,8 @@ pub const PATCHES: u32 = 0;
 /// [`SynthesisUniform::arrangement`] of [`Layout::CornerTiles`].
 pub const CORNER_TILES: u32 = 1;
 
-/// The record of [`UNIFORM`], `GlintSynthesis` of the shaders: all that a look-up needs to know besides offsets and seams.
+/// What the section [`crate::lobes::UNIFORM`] of the same name holds of a synthesis, `GlintSynthesis` of the shaders: all that a
+/// look-up needs to know besides offsets and seams. 64 bytes.
 /// Fields that the arrangement has no use for are 0.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
@@ -177,7 +176,7 @@ impl PathShape {
 }
 
 impl SynthesisParams {
-    /// The record of [`UNIFORM`] that goes with these parameters.
+    /// What shaders read of these parameters.
     pub fn uniform(&self) -> SynthesisUniform {
         let shape = self.patch_path();
         let uniform = SynthesisUniform {
