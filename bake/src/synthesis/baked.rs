@@ -23,7 +23,7 @@ impl Synthesis {
     }
 
     /// Bytes of the sections of offsets and seams.
-    pub fn gpu_bytes(&self) -> u64 {
-        4 * (self.params.stored_offsets() + self.params.stored_seam_words())
+    pub fn gpu_bytes(&self) -> usize {
+        4 * (self.params.stored_offsets() + self.params.stored_seam_words()) as usize
     }
 }

@@ -65,11 +65,6 @@ impl Candidates {
         self.offsets.len()
     }
 
-    /// Whether there are none, which options that fit the sample rule out.
-    pub(super) fn is_empty(&self) -> bool {
-        self.offsets.is_empty()
-    }
-
     /// How much of a candidate's patch every other shows.
     pub(super) fn likeness(&self, candidate: usize) -> &[Likeness] {
         &self.likeness[candidate * self.len()..][..self.len()]
