@@ -7,9 +7,8 @@ use glint_bake::input::{Crop, InputOptions, load_normal_map};
 use glint_bake_core::lobes::LobesOptions;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
-use glint_bake_core::surface::bake::ALIGNMENT;
 use glint_bake_core::surface::quality::{Exact, Measured, seam_footprints};
-use glint_bake_core::surface::{Surface, SurfaceSettings, bake};
+use glint_bake_core::surface::{ALIGNMENT, Surface, SurfaceOptions, SurfaceSettings, bake};
 use glint_bake_core::synthesis::{SynthesisOptions, Target};
 use glint_formats::Wrap;
 use std::path::Path;
@@ -75,12 +74,12 @@ fn load(path: &Path) -> NormalMap {
 
 fn baked(sample: &NormalMap, target: Target) -> Surface {
     let usual = SynthesisOptions { target, alignment: ALIGNMENT, ..SynthesisOptions::default() };
-    let options = match target {
+    let synthesis = match target {
         Target::Patches { .. } => usual,
         Target::Unbounded { .. } => SynthesisOptions { patch: 96, overlap: 6, ..usual },
     };
     let lobes = LobesOptions { roughness: ROUGHNESS, footprints: 0, ..LobesOptions::default() };
-    bake(sample, &lobes, &options, &Silent).unwrap_or_else(|e| panic!("{e}"))
+    bake(sample, &SurfaceOptions { lobes, synthesis }, &Silent).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn rows(name: &str, sample: &NormalMap, target: Target, footprints: u32) {

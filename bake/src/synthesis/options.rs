@@ -4,8 +4,8 @@ use crate::error::{BakeError, Result};
 use crate::normal_map::NormalMap;
 use glint_formats::Wrap;
 use glint_formats::synthesis::{
-    Layout, MAX_COLOURS, MAX_OVERLAP, MAX_PATCHES, MAX_SAMPLE_SIZE, MAX_VARIANTS, MeasuredError, PATCH_RANGE,
-    PathShape, SynthesisParams,
+    Layout, MAX_COLOURS, MAX_OVERLAP, MAX_PATCHES, MAX_SAMPLE_SIZE, MAX_SEAM_BYTES, MAX_VARIANTS, MeasuredError,
+    PATCH_RANGE, PathShape, SynthesisParams,
 };
 
 /// Most offsets among which patches are chosen.
@@ -128,6 +128,13 @@ impl SynthesisOptions {
                 self.patch
             )));
         }
+        let bytes = 4 * self.most_records().1;
+        if bytes > MAX_SEAM_BYTES {
+            return Err(BakeError::LimitExceeded(format!(
+                "synthesize: {width}x{height} texels take {bytes} bytes of seams, at most {MAX_SEAM_BYTES}; ask for a smaller \
+                 surface, a smaller overlap, or an unbounded surface"
+            )));
+        }
         Ok(())
     }
 
@@ -185,8 +192,15 @@ impl SynthesisOptions {
 
     /// Bytes of the sections of offsets and seams, at most; exact for a grid of patches.
     pub fn most_bytes(&self) -> u64 {
+        let (offsets, seams) = self.most_records();
+        // Buffers are a multiple of 16 bytes, and not empty.
+        4 * (offsets.next_multiple_of(4) + seams.max(1).next_multiple_of(4))
+    }
+
+    /// Offsets and words of seams, at most; exact for a grid of patches.
+    fn most_records(&self) -> (u64, u64) {
         let words = |entries: u32| u64::from(PathShape::new(entries, self.overlap).words);
-        let (offsets, seams) = match self.target {
+        match self.target {
             Target::Patches { width, height } => {
                 let patches = u64::from(width.div_ceil(self.patch)) * u64::from(height.div_ceil(self.patch));
                 (patches, patches * 2 * words(self.patch + self.overlap))
@@ -196,9 +210,7 @@ impl SynthesisOptions {
                 let pairs = u64::from(colours).pow(2) * 2 * words(2 * (self.margin() + self.overlap));
                 (u64::from(colours) + tiles, pairs + tiles * 4 * words(self.patch))
             }
-        };
-        // Buffers are a multiple of 16 bytes, and not empty.
-        4 * (offsets.next_multiple_of(4) + seams.max(1).next_multiple_of(4))
+        }
     }
 
     /// Parameters of a surface of a sample of this size with this layout, not yet measured.
