@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::normal_map::NormalMap;
 use crate::progress::Progress;
 use crate::quality::sweep;
-use crate::rng::ItemRng;
+use crate::rng::{ItemRng, Purpose};
 use glam::{DMat2, DVec2, Vec2};
 use glint_formats::Wrap;
 use glint_formats::lobes::{
@@ -141,13 +141,12 @@ fn build_levels(map: &NormalMap, options: &LobesOptions, baked: &mut BakedLobes,
 }
 
 pub(crate) fn reduce(options: &LobesOptions, grid: &LobeLevel, x: u32, y: u32, parts: &[Gaussian4]) -> Vec<Gaussian4> {
-    const PURPOSE: u32 = 7;
     let settings = MergeSettings {
         merge: options.merge,
         lobes: options.lobes_per_cell as usize,
         blur: [BLUR_OF_CELL * grid.cell_texels as f64, options.roughness],
     };
-    let mut rng = ItemRng::new(options.seed, PURPOSE + (grid.cell_texels << 8), y * grid.cells_x + x);
+    let mut rng = ItemRng::new(options.seed, Purpose::LobeCells(grid.cell_texels), y * grid.cells_x + x);
     merge::reduce(parts, &settings, &mut rng)
 }
 

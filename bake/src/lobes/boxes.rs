@@ -5,9 +5,10 @@
 
 use super::baked::BakedLobes;
 use super::eval::{Patch, Query, SeenLobe, box_lobe, ellipse, row, seen};
+use crate::wrap::wrapped;
 use glam::{IVec2, Mat2, Vec2};
 use glint_formats::Wrap;
-use glint_formats::lobes::{Filter, NormalsStorage};
+use glint_formats::lobes::{Filter, LobesParams, NormalsStorage};
 
 /// A normal's stored numbers.
 fn codes(word: u32) -> Vec2 {
@@ -26,11 +27,8 @@ pub(crate) fn bilinear(s00: Vec2, s10: Vec2, s01: Vec2, s11: Vec2, f: Vec2) -> P
 impl BakedLobes {
     /// A texel of the map, wrapped or clamped.
     fn wrapped(&self, texel: IVec2) -> IVec2 {
-        let size = IVec2::new(self.params.width as i32, self.params.height as i32);
-        match self.params.wrap {
-            Wrap::Repeat => texel.rem_euclid(size),
-            Wrap::Clamp => texel.clamp(IVec2::ZERO, size - 1),
-        }
+        let LobesParams { width, height, wrap, .. } = self.params;
+        IVec2::new(wrapped(texel.x, width as i32, wrap), wrapped(texel.y, height as i32, wrap))
     }
 
     /// Factor and offset of stored numbers of normals.

@@ -9,7 +9,7 @@
 use super::transform::{self, TransformRanges};
 use crate::error::{BakeError, Result};
 use crate::normal_map::NormalMap;
-use crate::rng::ItemRng;
+use crate::rng::{ItemRng, Purpose};
 use glam::DVec2;
 use glint_formats::ndf_maps::{NoiseTexel, PlacementKind, PlacementParams, TransformRecord};
 
@@ -128,10 +128,9 @@ struct Centre {
 
 impl Centre {
     fn draw(options: &StochasticOptions, cell: u32) -> Centre {
-        const PURPOSE: u32 = 2;
         // Centres keep to the middle of their cell, so that the nearest one is always among the 3 × 3 cells around.
         const JITTER: f64 = 0.75;
-        let mut rng = ItemRng::new(options.seed, PURPOSE, cell);
+        let mut rng = ItemRng::new(options.seed, Purpose::NdfCentres, cell);
         let mut unorm = |spread: f64| ((0.5 + spread * (rng.unit() - 0.5)) * 65535.0).round() as u16;
         let position = [unorm(JITTER), unorm(JITTER)];
         let offset = [unorm(1.0), unorm(1.0)];

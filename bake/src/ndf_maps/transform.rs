@@ -8,7 +8,7 @@
 use super::bake::ROUGHNESS_RANGE;
 use crate::error::{BakeError, Result};
 use crate::normal_map::NormalMap;
-use crate::rng::ItemRng;
+use crate::rng::{ItemRng, Purpose};
 use glam::{DMat2, DVec2};
 use glint_formats::ndf_maps::TransformRecord;
 
@@ -72,8 +72,7 @@ impl Transform {
 
 /// Draws `count` transforms, stratified in every parameter, one seed one result.
 pub fn draw_palette(ranges: &TransformRanges, count: u32, seed: u64) -> Vec<Transform> {
-    const PURPOSE: u32 = 1;
-    let mut rng = ItemRng::new(seed, PURPOSE, 0);
+    let mut rng = ItemRng::new(seed, Purpose::NdfPalette, 0);
     let orders: Vec<Vec<u32>> = (0..4).map(|_| rng.permutation(count)).collect();
     let mirrored = rng.permutation(count);
     (0..count as usize)

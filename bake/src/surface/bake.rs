@@ -14,7 +14,7 @@ use crate::lobes::merge::{self, MergeSettings};
 use crate::lobes::{BakedLobes, LobesOptions};
 use crate::normal_map::NormalMap;
 use crate::progress::Progress;
-use crate::rng::ItemRng;
+use crate::rng::{ItemRng, Purpose};
 use crate::synthesis::{self, Synthesis};
 use glam::{DMat2, DVec2};
 use glint_formats::lobes::{BEYOND_RIM, LobeLevel, MAX_LAST_CELLS};
@@ -25,8 +25,6 @@ use rayon::prelude::*;
 const MOST_PATCHES: u32 = 64;
 /// Cells whose lobes are reduced at a time for the surface as a whole.
 const GROUP: usize = 4;
-/// Purpose of the random numbers of k-means for the surface as a whole.
-const PURPOSE: u32 = 8;
 
 /// Bakes a surface of patches of `map`. A map that repeats, but not after a multiple of the alignment, is used as one that
 /// does not.
@@ -164,7 +162,7 @@ fn reduce_whole(
             .par_chunks(GROUP)
             .enumerate()
             .map(|(at, group)| {
-                let mut rng = ItemRng::new(options.seed, PURPOSE + (round << 8), at as u32);
+                let mut rng = ItemRng::new(options.seed, Purpose::SurfaceLobes(round), at as u32);
                 merge::reduce(&group.concat(), &settings, &mut rng)
             })
             .collect();

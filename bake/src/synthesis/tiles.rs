@@ -3,7 +3,7 @@
 
 use super::baked::Synthesis;
 use super::paths::{Place, floor_div, path_entry};
-use crate::dictionary::hash::{cell_state, draw_bits};
+use crate::hash::{cell_state, draw_bits};
 
 /// Uniform in 0 … n − 1 (n ≤ 65536) from random bits.
 fn below(bits: u32, n: u32) -> u32 {
