@@ -66,13 +66,14 @@ fn lobes_pack() -> Pack {
 }
 
 fn surface_pack() -> Pack {
-    let options = SynthesisOptions {
+    let synthesis = SynthesisOptions {
         target: Target::Patches { width: 256, height: 256 },
         patch: 32,
         overlap: 4,
         ..Default::default()
     };
-    let baked = surface::bake(&map(112, 128), &LobesOptions::default(), &options, &Silent).unwrap();
+    let options = surface::SurfaceOptions { lobes: LobesOptions::default(), synthesis };
+    let baked = surface::bake(&map(112, 128), &options, &Silent).unwrap();
     pack(surface::sections::to_sections("patches", &baked, Codec::None))
 }
 
