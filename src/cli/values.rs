@@ -1,7 +1,7 @@
 //! Values that flags take: crops, sizes, colours, byte counts, ranges of transforms.
 
 use crate::input::Crop;
-use glint_bake_core::ndf_maps::transform::TransformRanges;
+use glint_bake_core::ndf_maps::options::TransformRanges;
 
 /// `WxH+X+Y`, as ImageMagick writes it.
 pub fn crop(text: &str) -> Result<Crop, String> {

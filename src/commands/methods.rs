@@ -8,7 +8,7 @@ use crate::exit::Failure;
 use clap::Subcommand;
 use glint_bake_core::area_light::AreaLightMaterial;
 use glint_bake_core::environment::{Environment, EnvironmentImage};
-use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::normal_map::NormalMap;
 
 /// A bake with its flags.

@@ -2,7 +2,7 @@
 
 use super::text::{kib, percent};
 use crate::pack::{PAPER_TILE_BYTES, storage_name};
-use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::baked::Material;
 use glint_formats::Wrap;
 use glint_formats::ndf_maps::{
     CLASSES, DENSITY, MeasuredError, NOISE, NORMALS, PALETTE, PARAMS, PLACEMENT, PlacementKind, TILES,

@@ -5,7 +5,7 @@ use crate::exit::{Exit, Failure};
 use crate::info::Report;
 use crate::preview::{Camera, Layer, Object, Scene, Shape, Surface, render};
 use glam::Vec3;
-use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::sections;
 use std::path::Path;
 

@@ -3,7 +3,7 @@
 use crate::cli::{RunFlags, values};
 use crate::commands::normal_maps::InputFlags;
 use clap::ValueEnum;
-use glint_bake_core::ndf_maps::transform::TransformRanges;
+use glint_bake_core::ndf_maps::options::TransformRanges;
 use glint_formats::ndf_maps::DensityStorage;
 use std::path::PathBuf;
 

@@ -2,8 +2,8 @@
 
 use crate::canvas::Canvas;
 use glam::Vec2;
-use glint_bake_core::ndf_maps::bake::BakedNdfMaps;
-use glint_bake_core::ndf_maps::placement::BakedPlacement;
+use glint_bake_core::ndf_maps::baked::BakedNdfMaps;
+use glint_bake_core::ndf_maps::baked::BakedPlacement;
 use glint_formats::ndf_maps::{Level, PlacementKind};
 
 const BACKGROUND: [u8; 3] = [16, 16, 20];

@@ -5,7 +5,7 @@ mod reach;
 
 use crate::gpu::{Gpu, GpuError, ResourceSet, Resources, TABLE_WIDTH};
 use bytemuck::{Pod, Zeroable};
-use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::baked::Material;
 use glint_formats::Wrap;
 use glint_formats::ndf_maps::{DensityStorage, NoiseTexel, PlacementKind};
 
