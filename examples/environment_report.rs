@@ -107,7 +107,7 @@ fn options(levels: u32, storage: Storage, max_error: f64) -> EnvironmentOptions 
 
 fn default_row(name: &str, image: &EnvironmentImage, rows: &mut String) {
     let options = EnvironmentOptions { measured_texels: 0, ..EnvironmentOptions::default() };
-    let environment = bake(image, 0, &options, &Silent).unwrap_or_else(|e| panic!("{e}"));
+    let environment = bake(image, &options, &Silent).unwrap_or_else(|e| panic!("{e}"));
     let params = &environment.params;
     let rounding = params.measured.rounding.iter().copied().fold(0.0, f64::max);
     let mean = luminance(image.mean());
@@ -132,8 +132,7 @@ fn filter_rows(
 ) {
     let baked = |levels, storage, max_error| {
         let begin = cpu_seconds(false);
-        let environment =
-            bake(image, 0, &options(levels, storage, max_error), &Silent).unwrap_or_else(|e| panic!("{e}"));
+        let environment = bake(image, &options(levels, storage, max_error), &Silent).unwrap_or_else(|e| panic!("{e}"));
         (environment, cpu_seconds(false) - begin)
     };
     let (exact, _) = baked(1, Storage::F32, 0.005);
@@ -265,7 +264,7 @@ fn moment_rows(name: &str, image: &EnvironmentImage, rows: &mut String) {
     let _ = writeln!(rows, "| {name} | optimal | {one:.3} | {} |", cells(&mean));
     let _ = writeln!(rows, "| {name} | the paper's | {one:.3} | {} |", cells(&best));
     let options = EnvironmentOptions { min_face_size: 1, measured_texels: 0, ..EnvironmentOptions::default() };
-    let environment = bake(image, 0, &options, &Silent).unwrap_or_else(|e| panic!("{e}"));
+    let environment = bake(image, &options, &Silent).unwrap_or_else(|e| panic!("{e}"));
     let (mut sum, mut count) = (0.0, 0.0);
     for mip in 3..9 {
         for c in compare(image, &environment, mip, TEXELS) {

@@ -2,16 +2,15 @@
 
 use glam::DVec3;
 use glint_bake::input::environment::load_environment;
-use glint_bake_core::counting::normal::unit_from_bits;
-use glint_bake_core::environment::glints::{
-    GlintChances, GlintSurface, environment_glints, glint_chances, glint_relative_variance,
-};
+use glint_bake_core::counting::eval::unit_from_bits;
+use glint_bake_core::environment::eval::{Chances, Surface, environment_glints};
 use glint_bake_core::environment::image::luminance;
 use glint_bake_core::environment::options::LevelCount;
-use glint_bake_core::environment::reference_glints::{FacetMoments, FacetSurface};
-use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, bake};
+use glint_bake_core::environment::quality::relative_variance;
+use glint_bake_core::environment::reference::{FacetMoments, FacetSurface};
+use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, bake, eval};
 use glint_bake_core::progress::Silent;
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 use glint_formats::environment::LevelChoice;
 use rayon::prelude::*;
 use std::path::Path;
@@ -29,7 +28,6 @@ const MAX_DEGREES: f64 = 60.0;
 const FACE_SIZE: u32 = 128;
 /// Draws, and patches of placed facets.
 const PATCHES: u32 = 2000;
-const PURPOSE: u32 = 60;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -91,17 +89,18 @@ fn variances(
     for (e, (name, _)) in loaded.iter().enumerate() {
         for (r, root) in ROUGHNESSES.into_iter().enumerate() {
             let chances = |environment: &Environment, k: usize| {
-                glint_chances(environment, &drawn(k, root * root, max_degrees, 1.0))
+                eval::chances(environment, &drawn(k, root * root, max_degrees, 1.0))
             };
             let exact = &exact[e][r];
-            let mean =
-                error_of(exact.iter().enumerate().map(|(k, m)| [brightness(chances(&baked[e][2], k).smooth), m.mean]));
+            let mean = error_of(
+                exact.iter().enumerate().map(|(k, m)| [brightness(chances(&baked[e][2], k).smooth_radiance), m.mean]),
+            );
             let variance = |environment: &Environment, spread: Option<f32>| {
                 error_of(exact.iter().enumerate().map(|(k, m)| {
                     let chances = chances(environment, k);
-                    let chances = GlintChances { spread: spread.unwrap_or(chances.spread), ..chances };
-                    let smooth = brightness(chances.smooth);
-                    let drawn = f64::from(glint_relative_variance(&chances, 1.0)) * smooth * smooth;
+                    let chances = Chances { std_factor: spread.unwrap_or(chances.std_factor), ..chances };
+                    let smooth = brightness(chances.smooth_radiance);
+                    let drawn = f64::from(relative_variance(&chances, 1.0)) * smooth * smooth;
                     [drawn, m.relative_variance(1.0) * m.mean * m.mean]
                 }))
             };
@@ -167,7 +166,7 @@ fn placed_lot(surface: &FacetSurface, image: &EnvironmentImage, facets: f64, see
     let mut values: Vec<f64> = (0..PATCHES)
         .into_par_iter()
         .map(|patch| {
-            let extra = ItemRng::new(seed, PURPOSE, patch).unit() < facets.fract();
+            let extra = ItemRng::new(seed, Purpose::GlintReport, patch).unit() < facets.fract();
             let count = facets as u32 + u32::from(extra);
             if count == 0 {
                 0.0
@@ -181,10 +180,10 @@ fn placed_lot(surface: &FacetSurface, image: &EnvironmentImage, facets: f64, see
 }
 
 /// Luminances of draws over `smooth`, sorted.
-fn drawn_lot(environment: &Environment, surface: &GlintSurface, smooth: f64) -> Vec<f64> {
+fn drawn_lot(environment: &Environment, surface: &Surface, smooth: f64) -> Vec<f64> {
     let mut values: Vec<f64> = (0..PATCHES)
         .map(|draw| {
-            let mut rng = ItemRng::new(1, PURPOSE, draw);
+            let mut rng = ItemRng::new(1, Purpose::GlintReport, draw);
             let words = std::array::from_fn(|_| unit_from_bits(rng.bits()));
             brightness(environment_glints(environment, surface, &words)) / smooth
         })
@@ -201,7 +200,7 @@ fn baked(image: &EnvironmentImage, levels: u32, level_choice: LevelChoice) -> En
         measured_texels: 0,
         ..EnvironmentOptions::default()
     };
-    bake(image, 0, &options, &Silent).unwrap_or_else(|error| panic!("{error}"))
+    bake(image, &options, &Silent).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn exact_moments(image: &EnvironmentImage, alpha: f64, max_degrees: f64) -> Vec<FacetMoments> {
@@ -210,7 +209,7 @@ fn exact_moments(image: &EnvironmentImage, alpha: f64, max_degrees: f64) -> Vec<
 
 /// Seeded surface number `k`.
 fn surface(k: usize, alpha: f64, max_degrees: f64) -> FacetSurface {
-    let mut rng = ItemRng::new(0, PURPOSE, k as u32);
+    let mut rng = ItemRng::new(0, Purpose::GlintReport, k as u32);
     let height = 2.0 * rng.unit() - 1.0;
     let turn = std::f64::consts::TAU * rng.unit();
     let level = (1.0 - height * height).sqrt();
@@ -220,9 +219,9 @@ fn surface(k: usize, alpha: f64, max_degrees: f64) -> FacetSurface {
     FacetSurface { normal, view, alpha, f0: 0.6 }
 }
 
-fn drawn(k: usize, alpha: f64, max_degrees: f64, facets: f32) -> GlintSurface {
+fn drawn(k: usize, alpha: f64, max_degrees: f64, facets: f32) -> Surface {
     let surface = surface(k, alpha, max_degrees);
-    GlintSurface {
+    Surface {
         normal: surface.normal.as_vec3(),
         view: surface.view.as_vec3(),
         alpha: alpha as f32,

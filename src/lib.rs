@@ -3,12 +3,16 @@
 pub mod canvas;
 pub mod cli;
 pub mod commands;
+pub mod delivery;
 pub mod exit;
 pub mod info;
 pub mod input;
+pub mod methods;
 pub mod output;
 pub mod pack;
 pub mod plan;
 pub mod preview;
 pub mod progress;
 pub mod project;
+pub mod quantities;
+pub mod scene;

@@ -6,6 +6,8 @@ mod area_light;
 mod bad_input;
 #[path = "cli/bake.rs"]
 mod bake;
+#[path = "cli/bind_pack.rs"]
+mod bind_pack;
 #[path = "cli/build.rs"]
 mod build;
 #[path = "cli/build_real.rs"]
@@ -18,6 +20,8 @@ mod damage;
 mod dictionary;
 #[path = "cli/documentation.rs"]
 mod documentation;
+#[path = "cli/documentation_commands.rs"]
+mod documentation_commands;
 #[path = "cli/environment.rs"]
 mod environment;
 #[path = "cli/examples.rs"]
@@ -48,6 +52,8 @@ mod report;
 mod schema;
 #[path = "cli/shaders.rs"]
 mod shaders;
+#[path = "cli/shipped_maps.rs"]
+mod shipped_maps;
 #[path = "cli/support.rs"]
 mod support;
 #[path = "cli/surface.rs"]

@@ -4,12 +4,9 @@
 mod real_maps;
 
 use glint_bake_core::ndf_maps::bake::bake_maps;
-use glint_bake_core::ndf_maps::baked::BakedNdfMaps;
-use glint_bake_core::ndf_maps::baked::Material;
+use glint_bake_core::ndf_maps::baked::{BakedNdfMaps, Material};
 use glint_bake_core::ndf_maps::eval::EvalSettings;
-use glint_bake_core::ndf_maps::options::NdfMapsOptions;
-use glint_bake_core::ndf_maps::options::TransformRanges;
-use glint_bake_core::ndf_maps::options::{PlacementOptions, StochasticOptions};
+use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, StochasticOptions, TransformRanges};
 use glint_bake_core::ndf_maps::placement::place;
 use glint_bake_core::ndf_maps::quality::{footprint_errors, tile_errors};
 use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;

@@ -5,15 +5,15 @@
 //! FILE` bakes the default dictionary, writes its payload and stops, for measuring the process from outside.
 
 use glam::{DVec2, Vec2, Vec3};
-use glint_bake_core::dictionary::brdf::{masking, normal_to_slope, sdf_to_ndf};
+use glint_bake_core::brdf::{masking, normal_to_slope, sdf_to_ndf};
 use glint_bake_core::dictionary::eval::{
     GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_sdf, patch_sdf, slope_query,
 };
-use glint_bake_core::dictionary::hash::cell_state;
 use glint_bake_core::dictionary::quality::{LevelQuality, domain_floor, measure_level};
 use glint_bake_core::dictionary::reference::smooth_density;
 use glint_bake_core::dictionary::tables::{Dictionary, Tables};
 use glint_bake_core::dictionary::{DictionaryOptions, bake};
+use glint_bake_core::hash::cell_state;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::PI;

@@ -1,8 +1,9 @@
-// What all methods share between a distribution of normals and radiance. Twin of glint-bake-core dictionary/brdf.rs.
+// From a distribution of normals to radiance, as all methods have it. Twin of brdf.rs.
 //
 // Masking and shadowing are those of V-cavities (Chermain et al. 2020, Eq. 16), which need no knowledge of the
 // distribution but that it is even. Fresnel is Schlick's. Directions are unit vectors in the tangent frame, z the normal.
 
+// Half vectors nearer to the horizon than this cosine count as this far from it.
 const GLINT_MIN_COSINE: f32 = 1.0e-6;
 
 // Slope of a normal with z > 0 (Eq. 1).

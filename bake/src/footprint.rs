@@ -1,8 +1,9 @@
-//! The pixel footprint as a 2D Gaussian over a surface, in texels.
+//! The pixel's footprint as a 2D Gaussian over a surface, in texels: [`Footprint`] in f64, and, as functions, what a shader does
+//! in f32. Texel centres lie at i + ½.
 
-use glam::{DMat2, DVec2};
+use glam::{DMat2, DVec2, Vec2};
 
-/// Gaussian footprint: mean and covariance in texels (texel centres at i + ½).
+/// Gaussian footprint: mean and covariance in texels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footprint {
     /// Centre in texels.
@@ -37,5 +38,120 @@ impl Footprint {
     /// The footprint seen in coordinates x' = m · x + offset.
     pub fn transformed(&self, m: DMat2, offset: DVec2) -> Footprint {
         Footprint { mean: m * self.mean + offset, covariance: m * self.covariance * m.transpose() }
+    }
+}
+
+/// A footprint in f32, as a shader has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShaderFootprint {
+    /// Centre, texels.
+    pub mean: Vec2,
+    /// Covariance along x, texels².
+    pub xx: f32,
+    /// Covariance of x with y, texels².
+    pub xy: f32,
+    /// Covariance along y, texels².
+    pub yy: f32,
+}
+
+/// Principal axes of a footprint in f32.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Principal {
+    /// Unit vector along the major axis; (1, 0) for a circle.
+    pub axis: Vec2,
+    /// Standard deviation along it, texels.
+    pub major: f32,
+    /// Standard deviation across it, texels.
+    pub minor: f32,
+}
+
+/// Footprint of a pixel at `mean` whose place moves by `d_dx` and `d_dy` (texels) a pixel along the screen's axes:
+/// σ² (d_dx d_dxᵀ + d_dy d_dyᵀ). `pixel_sigma` is the standard deviation σ of the pixel's filter, in pixels.
+pub fn footprint_of_pixel(mean: Vec2, d_dx: Vec2, d_dy: Vec2, pixel_sigma: f32) -> ShaderFootprint {
+    let limit = Vec2::splat(1.0e8);
+    let dx = (d_dx * pixel_sigma).clamp(-limit, limit);
+    let dy = (d_dy * pixel_sigma).clamp(-limit, limit);
+    ShaderFootprint {
+        mean,
+        xx: dx.x * dx.x + dy.x * dy.x,
+        xy: dx.x * dx.y + dy.x * dy.y,
+        yy: dx.y * dx.y + dy.y * dy.y,
+    }
+}
+
+/// The leading 11 bits of a number. A product of two such parts is exact; what is left has 13.
+fn upper_half(x: f32) -> f32 {
+    f32::from_bits(x.to_bits() & 0xffff_e000)
+}
+
+/// A number but for its last bit. Compilers of shaders take sums and products apart for speed, which costs the digits that are
+/// kept by halves; they cannot look through integers.
+fn keep(x: f32) -> f32 {
+    f32::from_bits(x.to_bits() & 0xffff_fffe)
+}
+
+/// a c − b² with the digits that cancel, by exact products of halves.
+fn determinant(a: f32, b: f32, c: f32) -> f32 {
+    let ah = upper_half(a);
+    let bh = upper_half(b);
+    let ch = upper_half(c);
+    let al = a - ah;
+    let bl = b - bh;
+    let cl = c - ch;
+    let halves = keep(keep(ah * ch) - keep(bh * bh));
+    let cross = keep(keep(ah * cl) - keep(bh * bl)) + keep(keep(al * ch) - keep(bh * bl));
+    keep(halves + keep(cross)) + keep(al * cl - bl * bl)
+}
+
+/// Unit vector at half the angle of `v`, with x ≥ 0; (1, 0) for a zero vector.
+fn half_angle(v: Vec2) -> Vec2 {
+    let h = (v.x * v.x + v.y * v.y).sqrt();
+    let up = if v.y >= 0.0 { 1.0 } else { -1.0 };
+    let twice = if v.x >= 0.0 { Vec2::new(h + v.x, v.y) } else { Vec2::new(v.y.abs(), (h - v.x) * up) };
+    let long = (twice.x * twice.x + twice.y * twice.y).sqrt();
+    if long > 0.0 {
+        return twice / long;
+    }
+    Vec2::X
+}
+
+/// Principal axes. The minor one follows from the determinant: four digits at an anisotropy of 1000, where the difference of
+/// eigenvalues would have one.
+pub fn principal(footprint: ShaderFootprint) -> Principal {
+    // A power of two brings the numbers to order 1 without rounding.
+    let exponent = (footprint.xx + footprint.yy).clamp(1.0e-30, 1.0e30).to_bits() & 0x7f80_0000;
+    let down = f32::from_bits(0x7f00_0000 - exponent);
+    let up = f32::from_bits(exponent);
+    let a = footprint.xx * down;
+    let b = footprint.xy * down;
+    let c = footprint.yy * down;
+    let half_gap = Vec2::new(0.5 * (a - c), b);
+    let major2 = 0.5 * (a + c) + (half_gap.x * half_gap.x + half_gap.y * half_gap.y).sqrt();
+    let minor2 = determinant(a, b, c).max(0.0) / major2.max(1.0e-30);
+    Principal { axis: half_angle(half_gap), major: (major2 * up).sqrt(), minor: (minor2.min(major2) * up).sqrt() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn principal_axes_in_f32_are_those_of_f64() {
+        for (sigma, anisotropy) in [(0.01, 1.0), (0.5, 4.0), (3.0, 30.0), (10.0, 1000.0)] {
+            for turn in 0..32 {
+                let exact = Footprint::new(DVec2::ZERO, sigma, anisotropy, 0.1 * f64::from(turn));
+                let DMat2 { x_axis, y_axis } = exact.covariance;
+                let [xx, xy, yy] = [x_axis.x, x_axis.y, y_axis.y].map(|v| v as f32);
+                let found = principal(ShaderFootprint { mean: Vec2::ZERO, xx, xy, yy });
+                let given = DMat2::from_cols_array(&[xx, xy, xy, yy].map(f64::from));
+                let (_, major, axis) = Footprint { covariance: given, ..exact }.principal();
+                let minor = (given.determinant().max(0.0) / (major * major)).sqrt();
+                assert!((f64::from(found.major) / major - 1.0).abs() < 1e-6, "{sigma} {anisotropy}");
+                assert!((f64::from(found.minor) - minor).abs() < 1e-3 * minor, "{sigma} {anisotropy} {found:?}");
+                if anisotropy > 1.0 {
+                    assert!(found.axis.as_dvec2().dot(axis).abs() > 1.0 - 1e-6, "{sigma} {anisotropy}");
+                }
+            }
+        }
     }
 }

@@ -1,6 +1,4 @@
-// The pixel's footprint as a 2D Gaussian over a surface, in texels. Twin of glint-bake-core footprint.rs.
-//
-// No accessors. Texel centres lie at i + 1/2.
+// The pixel's footprint as a 2D Gaussian over a surface, in texels. Twin of footprint.rs. Texel centres lie at i + 1/2.
 
 struct GlintFootprint {
     // Centre, texels.

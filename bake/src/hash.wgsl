@@ -1,4 +1,4 @@
-// Random numbers of a surface cell: draws, and the two words of its state themselves. Twin of glint-bake-core dictionary/hash.rs, bit by bit.
+// Random numbers of a surface cell: draws, and the two words of its state themselves. Twin of hash.rs, bit by bit.
 //
 // A cell index (x, y) goes through four Feistel rounds, which is a bijection of 64 bits: two cells never share a state.
 

@@ -1,11 +1,15 @@
 //! The algorithms of glint-bake: slices in, sections out. No files, no printing, no command line, no GPU.
 
 pub mod area_light;
+pub mod brdf;
 pub mod counting;
 pub mod dictionary;
 pub mod environment;
+pub mod erf;
 pub mod error;
 pub mod footprint;
+pub mod ggx;
+pub mod hash;
 pub mod lobes;
 pub mod ndf_maps;
 pub mod normal_map;
@@ -17,3 +21,4 @@ mod shader;
 pub mod shaders;
 pub mod surface;
 pub mod synthesis;
+mod wrap;

@@ -9,7 +9,7 @@ use glint_bake_core::area_light::{AreaLightMaterial, AreaLightOptions, bake};
 use glint_bake_core::error::BakeError;
 use glint_bake_core::normal_map::{HORIZON, NormalMap};
 use glint_bake_core::progress::Silent;
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 use glint_formats::Wrap;
 use glint_formats::area_light::NormalStorage;
 
@@ -25,7 +25,7 @@ fn baked(map: &NormalMap, storage: NormalStorage) -> AreaLightMaterial {
 
 fn maps() -> Vec<NormalMap> {
     let edge = HORIZON as f32;
-    let mut rng = ItemRng::new(3, 1, 0);
+    let mut rng = ItemRng::new(3, Purpose::Test(1), 0);
     let noise: Vec<[f32; 2]> = (0..37 * 21).map(|_| [rng.unit() as f32 - 0.5, rng.unit() as f32 - 0.5]).collect();
     let step = 2.0 / 255.0;
     vec![
@@ -76,7 +76,7 @@ fn equal_normals_have_no_roughness() {
 
 #[test]
 fn a_map_turned_by_a_quarter_has_its_roughness_turned() {
-    let mut rng = ItemRng::new(9, 1, 0);
+    let mut rng = ItemRng::new(9, Purpose::Test(1), 0);
     let lines: Vec<f32> = (0..64).map(|_| 0.8 * (rng.unit() as f32 - 0.5)).collect();
     let along_x = map(64, 64, Wrap::Repeat, |_, y| [0.0, lines[y as usize]]);
     let along_y = map(64, 64, Wrap::Repeat, |x, _| [-lines[x as usize], 0.0]);

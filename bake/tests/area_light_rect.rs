@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use glint_bake_core::area_light::rect::quad_form_factor;
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 use std::f64::consts::PI;
 
 /// ∫ max(z, 0) |n_A · ω| / (π r²) dA over a parallelogram, by midpoints.
@@ -27,7 +27,7 @@ fn corners(c: DVec3, e: DVec3, f: DVec3) -> [Vec3; 4] {
 fn rectangles_anywhere_are_sums_over_them() {
     let mut clipped = 0;
     for k in 0..300 {
-        let mut rng = ItemRng::new(5, 1, k);
+        let mut rng = ItemRng::new(5, Purpose::Test(1), k);
         let mut point = || DVec3::new(rng.unit(), rng.unit(), rng.unit()) * 2.0 - 1.0;
         let (centre, e, f) = (point() * 2.0, point(), point());
         // Near enough a plane through the origin, midpoints do not find the peak; that is the next test's.

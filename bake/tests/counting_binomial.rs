@@ -1,11 +1,11 @@
 //! The binomial draw against the exact distribution: by going through its random word, and by drawing.
 
-use glint_bake_core::counting::binomial::{FEW, whole_count};
-use glint_bake_core::counting::normal::{Uniform, normal_upper_quantile, unit_from_bits};
+use glint_bake_core::counting::eval::{FEW, count_value, unit_from_bits, whole_binomial, whole_count};
+use glint_bake_core::counting::paper::normal_upper_quantile;
 use glint_bake_core::counting::quality::{CountingQuality, SecondWord, compare, outcomes};
 use glint_bake_core::counting::reference::ExactBinomial;
-use glint_bake_core::counting::{Count, binomial, paper, whole_binomial};
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::counting::{Count, binomial, paper};
+use glint_bake_core::rng::{ItemRng, Purpose};
 
 const TRIALS: [f32; 24] = [
     0.01, 0.3, 0.9, 1.0, 1.5, 2.0, 2.5, 3.0, 5.0, 8.0, 8.5, 11.0, 13.0, 16.0, 64.0, 300.0, 1e3, 1e4, 1e6, 1e8, 1e10,
@@ -105,7 +105,7 @@ fn random_draws_agree() {
     {
         let q = 1.0 - p;
         let exact = ExactBinomial::of_f32(n, p, q);
-        let mut rng = ItemRng::new(17, 1, item as u32);
+        let mut rng = ItemRng::new(17, Purpose::Test(1), item as u32);
         let (mut shift, mut square, mut fourth) = (0.0, 0.0, 0.0);
         for _ in 0..draws {
             let [hits, _] = binomial(n, p, q, [rng.bits(), rng.bits()]);
@@ -125,7 +125,7 @@ fn random_draws_agree() {
 
 #[test]
 fn hits_and_misses_add_up() {
-    let mut rng = ItemRng::new(17, 2, 0);
+    let mut rng = ItemRng::new(17, Purpose::Test(2), 0);
     for n in TRIALS {
         for (p, q) in chances(n) {
             for _ in 0..50 {
@@ -146,7 +146,7 @@ fn hits_and_misses_add_up() {
 
 #[test]
 fn both_ends_are_alike() {
-    let mut rng = ItemRng::new(17, 3, 0);
+    let mut rng = ItemRng::new(17, Purpose::Test(3), 0);
     for n in TRIALS {
         for (p, q) in chances(n).into_iter().filter(|(p, q)| p != q) {
             for _ in 0..50 {
@@ -171,7 +171,7 @@ fn both_ends_are_alike() {
 /// two forms may disagree by one.
 #[test]
 fn hits_grow_with_the_chance() {
-    let mut rng = ItemRng::new(17, 4, 0);
+    let mut rng = ItemRng::new(17, Purpose::Test(4), 0);
     let (mut falls, mut steps) = (0, 0);
     for n in [1.0f32, 2.0, 5.0, 9.0, 12.0, 13.0, 40.0, 300.0] {
         for _ in 0..200 {
@@ -179,7 +179,8 @@ fn hits_grow_with_the_chance() {
             let mut before = 0.0;
             for i in 0..=1000 {
                 let p = i as f32 / 1000.0;
-                let hits = whole_binomial(n.into(), p, 1.0 - p, Uniform::from_bits(bits))[0].value();
+                let hits =
+                    count_value(whole_binomial(n.into(), p, 1.0 - p, unit_from_bits(bits), unit_from_bits(!bits))[0]);
                 assert!(hits >= before - 1.0, "N {n} p {p} word {bits:x}: {before} then {hits}");
                 falls += u32::from(hits < before);
                 steps += 1;
@@ -195,11 +196,11 @@ fn hits_grow_with_the_chance() {
 fn certain_and_impossible_hits() {
     for n in [0.0f32, 1.0, 2.0, 12.0, 13.0, 1e4, 1e16] {
         for bits in [0u32, 1, 77, 1 << 31, u32::MAX - 1, u32::MAX] {
-            let u = Uniform::from_bits(bits);
-            assert_eq!(whole_binomial(n.into(), 0.0, 1.0, u), [0.0, n].map(Count::from));
-            assert_eq!(whole_binomial(n.into(), 1.0, 0.0, u), [n, 0.0].map(Count::from));
+            let [u, v] = [bits, !bits].map(unit_from_bits);
+            assert_eq!(whole_binomial(n.into(), 0.0, 1.0, u, v), [0.0, n].map(Count::from));
+            assert_eq!(whole_binomial(n.into(), 1.0, 0.0, u, v), [n, 0.0].map(Count::from));
             for p in [1e-16f32, 1e-3, 0.5, 0.7, 1.0 - f32::EPSILON] {
-                let [hits, misses] = whole_binomial(n.into(), p, 1.0 - p, u).map(Count::value);
+                let [hits, misses] = whole_binomial(n.into(), p, 1.0 - p, u, v).map(count_value);
                 assert!(hits >= 0.0 && hits <= n && misses >= 0.0 && misses <= n, "N {n} p {p} {hits} {misses}");
             }
         }

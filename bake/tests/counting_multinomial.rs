@@ -1,10 +1,8 @@
 //! Multinomial counts: sums, marginals, covariances, exact distribution of few facets, and the degenerate cases.
 
-use glint_bake_core::counting::binomial::whole_count;
-use glint_bake_core::counting::multinomial::tree_leaves;
-use glint_bake_core::counting::normal::unit_from_bits;
+use glint_bake_core::counting::eval::{count_value, tree_leaves, unit_from_bits, whole_count};
 use glint_bake_core::counting::{Count, MAX_LEVELS, multinomial};
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 
 fn words(rng: &mut ItemRng) -> [f32; MAX_LEVELS] {
     std::array::from_fn(|_| unit_from_bits(rng.bits()))
@@ -21,7 +19,7 @@ fn weights(levels: usize) -> [f32; MAX_LEVELS] {
 
 #[test]
 fn counts_are_whole_and_add_up() {
-    let mut rng = ItemRng::new(23, 1, 0);
+    let mut rng = ItemRng::new(23, Purpose::Test(1), 0);
     for levels in 1..=MAX_LEVELS {
         let all = weights(levels);
         for n in [0.0f32, 0.02, 0.9, 1.0, 1.5, 2.0, 7.3, 20.0, 1e3, 12345.6, 16_777_216.0, 1e10, 1e16] {
@@ -63,7 +61,7 @@ fn means_and_covariances_are_the_multinomials() {
         let total: f64 = all.iter().map(|w| f64::from(*w)).sum();
         let chance: Vec<f64> = all.iter().map(|w| f64::from(*w) / total).collect();
         let (trials, fraction) = (f64::from(n), f64::from(n.fract()));
-        let mut rng = ItemRng::new(23, 2, item as u32);
+        let mut rng = ItemRng::new(23, Purpose::Test(2), item as u32);
         let mut shift = [0.0; MAX_LEVELS];
         let mut product = [[0.0; MAX_LEVELS]; MAX_LEVELS];
         let mut square = [[0.0; MAX_LEVELS]; MAX_LEVELS];
@@ -115,7 +113,7 @@ fn counts_to_1e16_vary_as_they_should() {
         // Branches of ½ and ½ all down the tree, but the last: 2⁻²⁰ and the rest.
         let mut all = [0.125; MAX_LEVELS];
         (all[6], all[7]) = (0.25 * 2f32.powi(-20), 0.25 - 0.25 * 2f32.powi(-20));
-        let mut rng = ItemRng::new(23, 7, item as u32);
+        let mut rng = ItemRng::new(23, Purpose::Test(7), item as u32);
         let mut moments = [[0.0; 3]; 8];
         for _ in 0..draws {
             let counts = multinomial(n, &all, 8, &words(&mut rng)).map(f64::from);
@@ -140,10 +138,10 @@ fn few_facets_follow_the_multinomial_itself() {
     let all = weights(5).map(|w| w.sqrt());
     let total: f64 = all.iter().map(|w| f64::from(*w)).sum();
     let draws = 200_000u32;
-    let mut rng = ItemRng::new(23, 3, 0);
+    let mut rng = ItemRng::new(23, Purpose::Test(3), 0);
     let mut seen = std::collections::BTreeMap::<[u32; 5], u32>::new();
     for _ in 0..draws {
-        let counts = multinomial(3.0, &all, 5, &words(&mut rng)).map(Count::value);
+        let counts = multinomial(3.0, &all, 5, &words(&mut rng)).map(count_value);
         *seen.entry(std::array::from_fn(|i| counts[i] as u32)).or_default() += 1;
     }
     let (mut chi2, mut cells, mut mass) = (0.0, 0, 0.0);
@@ -175,7 +173,7 @@ fn a_rare_level_keeps_its_mean_anywhere() {
         let mut all = [0.0; MAX_LEVELS];
         all[..8].fill(0.125);
         all[place] = 1e-7;
-        let mut rng = ItemRng::new(23, 4, place as u32);
+        let mut rng = ItemRng::new(23, Purpose::Test(4), place as u32);
         let (n, draws) = (1e4f32, 200_000);
         let total: f64 = all.iter().map(|w| f64::from(*w)).sum();
         let expected = f64::from(n) * 1e-7 / total * f64::from(draws);
@@ -189,20 +187,20 @@ fn a_rare_level_keeps_its_mean_anywhere() {
 
 #[test]
 fn degenerate_weights() {
-    let mut rng = ItemRng::new(23, 5, 0);
+    let mut rng = ItemRng::new(23, Purpose::Test(5), 0);
     for _ in 0..1000 {
         let drawn = words(&mut rng);
         for levels in [1, 2, 3, 8, 16] {
             for only in 0..levels {
                 let mut all = [0.0; MAX_LEVELS];
                 all[only] = 1e-30;
-                let counts = multinomial(37.0, &all, levels, &drawn).map(Count::value);
+                let counts = multinomial(37.0, &all, levels, &drawn).map(count_value);
                 assert_eq!(counts[only], 37.0);
                 assert_eq!(counts.iter().sum::<f32>(), 37.0);
             }
-            let black = multinomial(37.0, &[0.0; MAX_LEVELS], levels, &drawn).map(Count::value);
+            let black = multinomial(37.0, &[0.0; MAX_LEVELS], levels, &drawn).map(count_value);
             assert_eq!((black[0], black.iter().sum::<f32>()), (37.0, 37.0));
-            let invalid = multinomial(5.0, &[f32::NAN; MAX_LEVELS], levels, &drawn).map(Count::value);
+            let invalid = multinomial(5.0, &[f32::NAN; MAX_LEVELS], levels, &drawn).map(count_value);
             assert_eq!(invalid.iter().sum::<f32>(), 5.0);
         }
         assert_eq!(multinomial(0.0, &[1.0; MAX_LEVELS], 16, &drawn), [Count::default(); MAX_LEVELS]);
@@ -214,7 +212,7 @@ fn degenerate_weights() {
 /// Words that the documentation does not name are not read.
 #[test]
 fn only_the_words_of_the_tree_are_read() {
-    let mut rng = ItemRng::new(23, 6, 0);
+    let mut rng = ItemRng::new(23, Purpose::Test(6), 0);
     for levels in 1..=MAX_LEVELS {
         let leaves = tree_leaves(levels);
         for _ in 0..200 {

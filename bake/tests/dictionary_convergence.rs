@@ -1,14 +1,14 @@
 //! What a cell, and the mean over cells, converges to: Beckmann and GGX, round and 100:1, and the white furnace.
 
 use glam::{DVec2, Vec2, Vec3};
-use glint_bake_core::dictionary::brdf::{masking, normal_to_slope, sdf_to_ndf};
+use glint_bake_core::brdf::{masking, normal_to_slope, sdf_to_ndf};
 use glint_bake_core::dictionary::eval::{
     GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_sdf, patch_sdf, slope_query,
 };
-use glint_bake_core::dictionary::hash::cell_state;
 use glint_bake_core::dictionary::reference::smooth_density;
 use glint_bake_core::dictionary::tables::Tables;
 use glint_bake_core::dictionary::{DictionaryOptions, bake};
+use glint_bake_core::hash::cell_state;
 use std::f64::consts::PI;
 
 fn material(target: u32, alpha: Vec2, density: f32) -> GlintMaterial {

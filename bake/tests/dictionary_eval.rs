@@ -5,8 +5,8 @@ use glint_bake_core::dictionary::cells::{cell_weight, level_window, max_cells, p
 use glint_bake_core::dictionary::eval::{
     GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_rotation, log1p_over_x, patch_sdf, smooth_sdf,
 };
-use glint_bake_core::dictionary::hash::{CellState, cell_state, draw_bits, uniform_from_bits};
 use glint_bake_core::dictionary::{DictionaryOptions, bake, reference};
+use glint_bake_core::hash::{CellState, cell_state, draw_bits, uniform_from_bits};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use std::collections::HashSet;

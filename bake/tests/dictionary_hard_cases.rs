@@ -1,8 +1,8 @@
 //! Hard cases: extreme roughness, density, footprints and directions. Always finite, never negative, bounded work.
 
 use glam::{Vec2, Vec3};
-use glint_bake_core::dictionary::brdf::patch_brdf;
 use glint_bake_core::dictionary::cells::max_cells;
+use glint_bake_core::dictionary::eval::patch_brdf;
 use glint_bake_core::dictionary::eval::{
     GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, patch_sdf, smooth_sdf,
 };

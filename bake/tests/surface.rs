@@ -8,7 +8,7 @@ use glint_bake_core::lobes::LobesOptions;
 use glint_bake_core::lobes::query::Detail;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 use glint_bake_core::surface::quality::{Exact, Measured, seam_footprints};
 use glint_bake_core::surface::sections::{from_pack, surfaces, to_sections};
 use glint_bake_core::surface::{Surface, SurfaceSettings, bake};
@@ -19,7 +19,7 @@ use glint_formats::{Codec, Limits, Pack, PackBuilder};
 
 /// Waves with noise on them: something smooth, something rough.
 fn waves(width: u32, height: u32, wrap: Wrap) -> NormalMap {
-    let mut rng = ItemRng::new(5, 0, 0);
+    let mut rng = ItemRng::new(5, Purpose::Test(0), 0);
     let texel = |at: u32| {
         let (x, y) = ((at % width) as f64 / width as f64, (at / width) as f64 / height as f64);
         let wave = |k: f64| (std::f64::consts::TAU * k).sin();

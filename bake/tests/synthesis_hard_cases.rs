@@ -3,7 +3,7 @@
 use glint_bake_core::error::BakeError;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 use glint_bake_core::synthesis::measure::{feature_ends, repetition, seam_ratio, whole_share};
 use glint_bake_core::synthesis::sections::{from_pack, surfaces, to_sections};
 use glint_bake_core::synthesis::{Synthesis, SynthesisOptions, Target, assemble, bake};
@@ -13,7 +13,7 @@ use glint_formats::{Codec, Limits, Pack, PackBuilder};
 use std::collections::BTreeSet;
 
 fn noise(width: u32, height: u32, wrap: Wrap) -> NormalMap {
-    let mut rng = ItemRng::new(5, 0, 0);
+    let mut rng = ItemRng::new(5, Purpose::Test(0), 0);
     let mut number = || (rng.unit() - 0.5) as f32;
     NormalMap { width, height, wrap, projected: (0..width * height).map(|_| [number(), number()]).collect() }
 }

@@ -1,9 +1,9 @@
 //! Patch synthesis against its definition: every candidate tried, every path tried, patches pasted into an image.
 
-use glint_bake_core::dictionary::hash::{cell_state, draw_bits};
+use glint_bake_core::hash::{cell_state, draw_bits};
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 use glint_bake_core::synthesis::choose::Radii;
 use glint_bake_core::synthesis::features::{Features, distance};
 use glint_bake_core::synthesis::reference::{self, ReferenceFeatures};
@@ -14,7 +14,7 @@ use glint_formats::synthesis::{Layout, PathShape};
 
 /// Waves with noise: neighbours are alike, distant texels are not.
 fn sample(width: u32, height: u32, wrap: Wrap) -> NormalMap {
-    let mut rng = ItemRng::new(7, 0, 0);
+    let mut rng = ItemRng::new(7, Purpose::Test(0), 0);
     let projected = (0..width * height)
         .map(|k| {
             let (x, y) = (f64::from(k % width), f64::from(k / width));
@@ -86,7 +86,7 @@ fn chosen_patches_are_those_of_the_exhaustive_search() {
 
 #[test]
 fn a_cut_is_the_least_of_all_paths() {
-    let mut rng = ItemRng::new(1, 0, 0);
+    let mut rng = ItemRng::new(1, Purpose::Test(0), 0);
     for (rows, overlap) in [(1, 1), (1, 4), (6, 2), (7, 3), (7, 5), (5, 1)] {
         for _ in 0..20 {
             let cost: Vec<u32> = (0..rows * overlap).map(|_| rng.below(9)).collect();

@@ -52,14 +52,14 @@ struct Document {
     bytes: Vec<u8>,
 }
 
-/// Runs the subcommand.
-pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
+/// Runs the subcommand; `programs` are all of them, as clap sees them.
+pub fn run(args: &Args, programs: [clap::Command; 3], terminal: Terminal) -> Result<(), Failure> {
     let documents = match args.what {
-        What::Man => manual()?,
-        What::Bash => completions(Shell::Bash),
-        What::Zsh => completions(Shell::Zsh),
-        What::Fish => completions(Shell::Fish),
-        What::PowerShell => completions(Shell::PowerShell),
+        What::Man => manual(programs)?,
+        What::Bash => completions(programs, Shell::Bash),
+        What::Zsh => completions(programs, Shell::Zsh),
+        What::Fish => completions(programs, Shell::Fish),
+        What::PowerShell => completions(programs, Shell::PowerShell),
     };
     let Some(folder) = &args.output else {
         let text: Vec<u8> = documents.into_iter().flat_map(|document| document.bytes).collect();
@@ -74,7 +74,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     Ok(())
 }
 
-fn completions(shell: Shell) -> Vec<Document> {
+fn completions(programs: [clap::Command; 3], shell: Shell) -> Vec<Document> {
     let document = |mut program: clap::Command| {
         use clap_complete::Generator;
         let name = program.get_name().to_owned();
@@ -82,13 +82,13 @@ fn completions(shell: Shell) -> Vec<Document> {
         clap_complete::generate(shell, &mut program, &name, &mut bytes);
         Document { name: shell.file_name(&name), bytes }
     };
-    super::programs().map(document).into()
+    programs.map(document).into()
 }
 
 /// A page a program and a page a subcommand.
-fn manual() -> Result<Vec<Document>, Failure> {
+fn manual(programs: [clap::Command; 3]) -> Result<Vec<Document>, Failure> {
     let mut pages = Vec::new();
-    for mut program in super::programs() {
+    for mut program in programs {
         program.build();
         let subcommands = program.get_subcommands().filter(|command| command.get_name() != "help").cloned();
         for command in std::iter::once(program.clone()).chain(subcommands) {

@@ -1,30 +1,22 @@
 //! One file (or folder) a subcommand: its flags and what it does.
 
-mod area_light;
+mod bake;
 mod build;
-mod deliver;
+
 mod demo;
-mod dictionary;
-mod environment;
 mod export;
 mod generate;
 mod info;
-mod lobes;
-mod methods;
-mod ndf_maps;
 mod ninja;
-mod normal_maps;
 mod plan;
 mod preview;
 mod report;
 mod shaders;
-mod surface;
 mod view;
-
-pub use methods::{Draft, Method};
 
 use crate::cli::{Common, LONG_VERSION, Terminal};
 use crate::exit::{Failure, HELP};
+use crate::methods::MethodCommand;
 use clap::{CommandFactory, Parser, Subcommand};
 
 /// Lines that `glint-bake --help` shows and a test runs.
@@ -57,7 +49,7 @@ pub struct Bake {
 #[derive(Subcommand, Debug)]
 enum Command {
     #[command(flatten)]
-    Method(Method),
+    Method(MethodCommand),
     Build(build::Args),
     Ninja(ninja::Args),
     Plan(plan::Args),
@@ -73,13 +65,13 @@ enum Command {
 pub fn bake(cli: Bake) -> Result<(), Failure> {
     let terminal = Terminal::new(&cli.common);
     match cli.command {
-        Command::Method(method) => method.run(terminal),
+        Command::Method(MethodCommand(method)) => bake::run(method.as_ref(), terminal),
         Command::Build(args) => build::run(&args, terminal),
         Command::Ninja(args) => ninja::run(&args, terminal),
         Command::Plan(args) => plan::run(&args, terminal),
         Command::Preview(args) => preview::run(&args, terminal),
         Command::Export(args) => export::run(&args, terminal),
-        Command::Generate(args) => generate::run(&args, terminal),
+        Command::Generate(args) => generate::run(&args, programs(), terminal),
         Command::Shaders(args) => shaders::run(&args, terminal),
         Command::Report(args) => report::run(&args, terminal),
         Command::Demo(args) => demo::run(&args, terminal),
@@ -134,14 +126,4 @@ pub fn view(cli: View) -> Result<(), Failure> {
 /// documentation.
 pub fn programs() -> [clap::Command; 3] {
     [Bake::command(), Info::command(), View::command()]
-}
-
-/// Runs `work` on `threads` threads; as many as there are cores when it is not said.
-fn on_threads<T: Send>(threads: Option<u32>, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-    let Some(threads) = threads else { return Ok(work()) };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build();
-    let pool = pool.map_err(|e| {
-        Failure::new(crate::exit::Exit::Unexpected, format!("{threads} threads cannot be started: {e}; give fewer"))
-    })?;
-    Ok(pool.install(work))
 }

@@ -2,10 +2,9 @@
 
 use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
-use crate::info::{kib, percent};
 use crate::output;
-use crate::plan;
-use crate::project::Project;
+use crate::project::{self, Project, settled};
+use crate::quantities::{kib, percent};
 use std::path::PathBuf;
 
 /// Lines that the help shows and a test runs.
@@ -35,11 +34,11 @@ pub struct Args {
 
 /// Runs the subcommand.
 pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
-    let project = Project::load(&args.project)?;
+    let project = project::load(&args.project)?;
     if args.measure {
-        return super::on_threads(args.threads, || measure(project, terminal))?;
+        return crate::cli::on_threads(args.threads, || measure(project, terminal))?;
     }
-    let plan = super::on_threads(args.threads, || plan::plan(&project, terminal))??;
+    let plan = crate::cli::on_threads(args.threads, || settled::plan(&project, terminal))??;
     if let Some(scene) = &project.scene {
         output::print(&plan.to_text(scene))?;
     }
@@ -52,15 +51,15 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
 
 /// Says how good the packs are; a failure when one is not good enough.
 fn measure(mut project: Project, terminal: Terminal) -> Result<(), Failure> {
-    plan::settle(&mut project, false, terminal)?;
-    let all = plan::measure(&project)?;
+    settled::settle(&mut project, false, terminal)?;
+    let all = settled::measure(&project)?;
     let mut text = String::new();
-    for pack in &all {
+    for (name, pack) in &all {
         let (error, budget) = (percent(pack.error), percent(pack.budget));
-        text += &format!("{}: {} {error} of {budget}, {}\n", pack.name, pack.measure, kib(pack.bytes));
+        text += &format!("{name}: {} {error} of {budget}, {}\n", pack.measure, kib(pack.bytes));
     }
     output::print(&text)?;
-    match all.iter().filter(|pack| pack.error > pack.budget).count() {
+    match all.iter().filter(|(_, pack)| pack.error > pack.budget).count() {
         0 => Ok(()),
         count => Err(Failure::new(Exit::BadInput, format!("{count} of {} packs exceed their error", all.len()))),
     }

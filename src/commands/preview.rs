@@ -3,6 +3,7 @@
 use crate::cli::{Terminal, values};
 use crate::exit::{Exit, Failure};
 use crate::info::Report;
+use crate::methods::ndf_maps::info::LayersInfo;
 use crate::output;
 use crate::preview::{Camera, Layer, Object, Scene, Shape, Surface, render};
 use clap::ValueEnum;
@@ -81,7 +82,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let look = Look::choose(&report, args)?;
     let scene = look.scene(args);
     let (width, height) = args.size;
-    let canvas = super::on_threads(args.threads, || render(&scene, width, height))?;
+    let canvas = crate::cli::on_threads(args.threads, || render(&scene, width, height))?;
     output::write(&args.output, &canvas.to_png())?;
     terminal.say(&format!("{}: written, {width} × {height}", args.output.display()));
     Ok(())
@@ -106,12 +107,8 @@ impl Look {
             }
             return Ok(Look { base: load(name)?, coat: None, layers: None });
         }
-        if let Some(layers) = report.layers.first() {
-            return Ok(Look {
-                base: load(&layers.base)?,
-                coat: Some(load(&layers.coat)?),
-                layers: Some(layers.clone()),
-            });
+        if let Some(LayersInfo(layers)) = LayersInfo::all_of(pack).into_iter().next() {
+            return Ok(Look { base: load(&layers.base)?, coat: Some(load(&layers.coat)?), layers: Some(layers) });
         }
         let Some(first) = names.first() else {
             let message = format!("{}: expected a material to show, found none in the pack", args.pack.display());

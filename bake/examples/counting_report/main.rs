@@ -8,12 +8,11 @@ mod plot;
 mod radiance;
 mod variants;
 
-use glint_bake_core::counting::binomial::FEW;
-use glint_bake_core::counting::pow1m::{Elementary, Native, pow1m_with};
+use glint_bake_core::counting::eval::{FEW, count_value};
+use glint_bake_core::counting::pow1m::{Elementary, LeastExact, Native, pow1m_with};
 use glint_bake_core::counting::quality::{CountingQuality, SecondWord, compare, outcomes};
 use glint_bake_core::counting::reference::ExactBinomial;
-use glint_bake_core::counting::wgsl::LeastExact;
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::rng::{ItemRng, Purpose};
 use std::time::Instant;
 use variants::{Draw, Variant, variants};
 
@@ -154,7 +153,7 @@ fn by_trials(paper: &Variant, ours: &Variant) {
 
 /// Least nanoseconds a draw of each variant, over passes that take turns.
 fn nanoseconds(all: &[Variant], n: f32, p: f32, q: f32) -> Vec<f64> {
-    let mut rng = ItemRng::new(5, 1, 0);
+    let mut rng = ItemRng::new(5, Purpose::Test(1), 0);
     let words: Vec<[u32; 2]> = (0..4096).map(|_| [rng.bits(), rng.bits()]).collect();
     let time = |draw: Draw| {
         let start = Instant::now();
@@ -162,7 +161,7 @@ fn nanoseconds(all: &[Variant], n: f32, p: f32, q: f32) -> Vec<f64> {
         for word in &words {
             let (n, p, q) = std::hint::black_box((n, p, q));
             let [hits, misses] = draw(n, p, q, *word);
-            sum += hits.value() - misses.value();
+            sum += count_value(hits) - count_value(misses);
         }
         std::hint::black_box(sum);
         start.elapsed().as_secs_f64() * 1e9 / words.len() as f64
@@ -272,7 +271,7 @@ fn draws(paper: &Variant, ours: &Variant) {
         let exact = ExactBinomial::of_f32(n, p, q);
         let mut row = format!("| {n} | {p:e} |");
         for variant in [paper, ours] {
-            let mut rng = ItemRng::new(31, 2, item as u32);
+            let mut rng = ItemRng::new(31, Purpose::Test(2), item as u32);
             let (mut shift, mut square, mut fourth) = (0.0, 0.0, 0.0);
             for _ in 0..count {
                 let d = f64::from((variant.draw)(n, p, q, [rng.bits(), rng.bits()])[0]) - exact.mean();

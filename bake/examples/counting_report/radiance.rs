@@ -1,9 +1,9 @@
 //! Mean and variance of Σ L_k n_k, the radiance of glints, for K log-uniform levels: ours and the paper's tree against
 //! the multinomial's own moments.
 
-use glint_bake_core::counting::normal::unit_from_bits;
-use glint_bake_core::counting::{Count, MAX_LEVELS, multinomial, paper};
-use glint_bake_core::rng::ItemRng;
+use glint_bake_core::counting::eval::{count_value, unit_from_bits};
+use glint_bake_core::counting::{MAX_LEVELS, multinomial, paper};
+use glint_bake_core::rng::{ItemRng, Purpose};
 use std::time::Instant;
 
 /// Radiances of K levels from 1 to 10⁴ and chances that fall as L^−0.9; half of the facets see level 0, which is black.
@@ -44,12 +44,12 @@ pub fn table() {
             let variance =
                 trials * (moment(2) - moment(1) * moment(1)) + fraction * (1.0 - fraction) * moment(1) * moment(1);
             let run = |ours: bool| {
-                let mut rng = ItemRng::new(41, ours.into(), item as u32);
+                let mut rng = ItemRng::new(41, Purpose::Test(ours.into()), item as u32);
                 let (mut shift, mut square, mut fourth) = (0.0, 0.0, 0.0);
                 for _ in 0..draws {
                     let counts = if ours {
                         let words = std::array::from_fn(|_| unit_from_bits(rng.bits()));
-                        multinomial(n, &weight, count, &words).map(Count::value)
+                        multinomial(n, &weight, count, &words).map(count_value)
                     } else {
                         let bits: [u32; 2 * MAX_LEVELS] = std::array::from_fn(|_| rng.bits());
                         paper::multinomial(n, &weight, count, &bits)
@@ -87,7 +87,7 @@ fn nanoseconds<W, C, const WORDS: usize>(
     word: impl Fn(&mut ItemRng) -> W,
     draw: impl Fn(&[W; WORDS]) -> [C; MAX_LEVELS],
 ) -> f64 {
-    let mut rng = ItemRng::new(5, 3, 0);
+    let mut rng = ItemRng::new(5, Purpose::Test(3), 0);
     let words: Vec<[W; WORDS]> = (0..1024).map(|_| std::array::from_fn(|_| word(&mut rng))).collect();
     let mut least = f64::MAX;
     for _ in 0..12 {

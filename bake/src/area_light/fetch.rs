@@ -4,7 +4,8 @@
 use super::eval::Roughness;
 use super::material::AreaLightMaterial;
 use super::spread;
-use glam::{Vec2, Vec3, Vec4};
+use crate::wrap::{filtered_texels, wrapped};
+use glam::{IVec2, Vec2, Vec3, Vec4};
 use glint_formats::Wrap;
 use glint_formats::area_light::NormalStorage;
 use glint_formats::container::full_mip_count;
@@ -75,10 +76,7 @@ impl<'a> Maps<'a> {
 /// Texel of a mip from the bytes of its texture.
 fn texel(maps: &Maps<'_>, bytes: &[u8], mip: u32, i: i32, j: i32) -> Vec4 {
     let (width, height) = ((maps.width >> mip).max(1) as i32, (maps.height >> mip).max(1) as i32);
-    let (i, j) = match maps.wrap {
-        Wrap::Repeat => (i.rem_euclid(width), j.rem_euclid(height)),
-        Wrap::Clamp => (i.clamp(0, width - 1), j.clamp(0, height - 1)),
-    };
+    let (i, j) = (wrapped(i, width, maps.wrap), wrapped(j, height, maps.wrap));
     let size = maps.storage.texel_bytes();
     let at = (maps.first[mip as usize] + j as usize * width as usize + i as usize) * size;
     Vec4::from_array(maps.storage.decode(&bytes[at..at + size]))
@@ -87,10 +85,7 @@ fn texel(maps: &Maps<'_>, bytes: &[u8], mip: u32, i: i32, j: i32) -> Vec4 {
 /// Bilinear look-up in one mip at `position` in texels of the map.
 fn bilinear(maps: &Maps<'_>, bytes: &[u8], mip: u32, position: Vec2) -> Vec4 {
     let size = Vec2::new((maps.width >> mip).max(1) as f32, (maps.height >> mip).max(1) as f32);
-    let p = position / Vec2::new(maps.width as f32, maps.height as f32) * size - 0.5;
-    let cell = p.floor();
-    let f = p - cell;
-    let (i, j) = (cell.x as i32, cell.y as i32);
+    let (IVec2 { x: i, y: j }, f) = filtered_texels(position / Vec2::new(maps.width as f32, maps.height as f32) * size);
     let low = texel(maps, bytes, mip, i, j).lerp(texel(maps, bytes, mip, i.saturating_add(1), j), f.x);
     let j = j.saturating_add(1);
     let high = texel(maps, bytes, mip, i, j).lerp(texel(maps, bytes, mip, i.saturating_add(1), j), f.x);

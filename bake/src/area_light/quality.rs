@@ -9,7 +9,7 @@ use super::tables::{LtcTables, SIZE, alpha_of, cosine_of};
 use crate::footprint::Footprint;
 use crate::normal_map::NormalMap;
 use crate::quality::metrics::Summary;
-use crate::rng::ItemRng;
+use crate::rng::{ItemRng, Purpose};
 use glam::{DVec2, DVec3};
 use half::f16;
 use rayon::prelude::*;
@@ -111,11 +111,10 @@ pub const LIGHTS: [(f64, f64); 4] = [(0.0, 0.1), (0.15, 0.25), (0.3, 0.1), (0.5,
 /// Scenes of one base roughness: every angle of view with every light, turned by seeded angles. Lights face the surface.
 pub fn scenes(alpha: f64) -> Vec<Scene> {
     const SEED: u64 = 7;
-    const PURPOSE: u32 = 99;
     let mut all = Vec::new();
     for (i, theta) in VIEW_ANGLES.into_iter().enumerate() {
         for (k, (offset, half)) in LIGHTS.into_iter().enumerate() {
-            let mut rng = ItemRng::new(SEED, PURPOSE, (10 * i + k) as u32);
+            let mut rng = ItemRng::new(SEED, Purpose::AreaLightScenes, (10 * i + k) as u32);
             let turn = TAU * rng.unit();
             let (sin, cos) = (libm::sin(theta), libm::cos(theta));
             let view = DVec3::new(sin * libm::cos(turn), sin * libm::sin(turn), cos);
@@ -198,9 +197,8 @@ fn ratio(over: impl Iterator<Item = (f64, f64)> + Clone) -> (f64, f64) {
 /// Place k of an even spread over the map, as shares of it: the additive recurrence of the plastic number (Roberts 2018,
 /// "R2"), from a seeded start. Random places leave gaps, and few of a map's places make most of its error.
 fn place_of(seed: u64, k: u32) -> DVec2 {
-    const PURPOSE: u32 = 77;
     const STEP: DVec2 = DVec2::new(0.754_877_666_246_693, 0.569_840_290_998_053);
-    let mut rng = ItemRng::new(seed, PURPOSE, 0);
+    let mut rng = ItemRng::new(seed, Purpose::AreaLightPlaces, 0);
     (DVec2::new(rng.unit(), rng.unit()) + STEP * f64::from(k)).fract()
 }
 

@@ -16,8 +16,9 @@
 //! - Density randomisation takes its normal number from two uniform ones, so its tails are bounded.
 
 use super::cells::{MAX_CELL_LEVEL, PixelFootprint, cell_weight, level_window, pixel_footprint, row_span};
-use super::hash::{CellState, cell_state_in_row, draw_bits, draw_uniform, row_key};
 use super::tables::Tables;
+use crate::brdf::{facet_brdf, half_vector, normal_to_slope, sdf_to_ndf};
+use crate::hash::{CellState, cell_state_in_row, draw_bits, draw_uniform, row_key};
 use glam::{Vec2, Vec3};
 
 /// Target: Beckmann.
@@ -267,4 +268,34 @@ pub fn patch_sdf(tables: &Tables, material: &GlintMaterial, pixel: PixelOnSurfac
         coverage: a.coverage + (b.coverage - a.coverage) * blend,
         cells: a.cells + b.cells,
     }
+}
+
+/// A pixel's BRDF and what of it is left to the base material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PatchBrdf {
+    /// BRDF, by colour, already weighted by the coverage.
+    pub value: Vec3,
+    /// Share of the footprint that glints.
+    pub coverage: f32,
+    /// Cells visited.
+    pub cells: u32,
+}
+
+/// BRDF of a pixel (Eq. 14, algorithm 1) for unit directions to the viewer and the light, in the tangent frame. Zero if either
+/// is not above the surface.
+pub fn patch_brdf(
+    tables: &Tables,
+    material: &GlintMaterial,
+    f0: Vec3,
+    pixel: PixelOnSurface,
+    view: Vec3,
+    light: Vec3,
+) -> PatchBrdf {
+    if !(view.z > 0.0 && light.z > 0.0) {
+        return PatchBrdf { value: Vec3::ZERO, coverage: 0.0, cells: 0 };
+    }
+    let half = half_vector(view, light);
+    let slopes = patch_sdf(tables, material, pixel, normal_to_slope(half));
+    let value = facet_brdf(sdf_to_ndf(slopes.sdf, half.z), f0, view, light);
+    PatchBrdf { value, coverage: slopes.coverage, cells: slopes.cells }
 }

@@ -4,23 +4,21 @@
 //! and appendix A. A small table of 1D marginals P_i(x, level) is baked once ([`bake()`]). At run time a cell of the
 //! surface picks two of them by hash, and P_i(x) · P_j(y), rotated and scaled to the wished roughness, is the cell's
 //! slope distribution ([`eval`]); cells are averaged over the pixel footprint ([`cells`]) and put into a microfacet
-//! BRDF ([`brdf`]). [`reference`] says the same from the definitions in f64, and [`quality`] measures one by the other.
+//! BRDF ([`crate::brdf`]). [`reference`] says the same from the definitions in f64, and [`quality`] measures one by the other.
 //!
-//! What deviates from the paper, and why, stands on top of each file and in `docs/METHODS.md`. The main points:
+//! What deviates from the paper, and why, stands on top of each file and in `docs/methods/dictionary.md`. The main points:
 //! - samples sit at bin centres, and a marginal is normalised as linear filtering with clamp to edge reads it, after
 //!   rounding to half floats ([`mod@round`]);
 //! - lobe means are stratified across the dictionary, and drawn so that lobe and sampler together give the target's
 //!   variance ([`draws`], [`bake()`]);
 //! - GGX is a target too, through a radial warp of the slope plane ([`eval`]);
 //! - no cell inside the footprint is left out, and the number of cells is bounded ([`cells`]);
-//! - the hash is a bijection of the cell index ([`hash`]).
+//! - the hash is a bijection of the cell index ([`crate::hash`]).
 
 pub mod bake;
-pub mod brdf;
 pub mod cells;
 pub mod draws;
 pub mod eval;
-pub mod hash;
 pub mod options;
 pub mod quality;
 pub mod reference;

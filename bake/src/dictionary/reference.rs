@@ -1,5 +1,5 @@
 //! The dictionary and its run time from the definitions, in f64: slow, and sharing nothing with the fast path but the
-//! random numbers ([`super::draws`], [`super::hash`]) and the options.
+//! random numbers ([`super::draws`], [`crate::hash`]) and the options.
 //!
 //! - A marginal is the sum of its lobes and their mirror images, each an exact Gaussian, cut at the domain and divided by
 //!   what is left inside (paper, sections 4.2 to 4.4). Lobe means are quantiles found by bisection.
@@ -9,8 +9,8 @@
 
 use super::draws::Draws;
 use super::eval::{GlintMaterial, PixelOnSurface, TARGET_GGX};
-use super::hash::{cell_state, draw_bits, draw_uniform};
 use super::options::DictionaryOptions;
+use crate::hash::{cell_state, draw_bits, draw_uniform};
 use glam::DVec2;
 use std::f64::consts::{PI, SQRT_2};
 

@@ -4,18 +4,17 @@
 //! largest error of a measured texel as a share of its exact value. Texels are chosen at random, half of them evenly and
 //! half by their luminance, and weighted by how likely each was, so that a sun of a few texels is not missed.
 
+use super::baked::Environment;
 use super::cube::texel_direction;
+use super::eval::Chances;
 use super::image::{EnvironmentImage, luminance};
 use super::prefilter::{OF_SHARP, SHARP};
 use super::reference::{Filtered, filtered, texel_mean};
-use super::tables::Environment;
 use crate::progress::Progress;
-use crate::rng::ItemRng;
+use crate::rng::{ItemRng, Purpose};
 use glint_formats::environment::{EnvironmentParams, MeasuredMip};
 use rayon::prelude::*;
 
-/// Purpose of the random numbers that choose texels.
-const PURPOSE: u32 = 30;
 /// Images of fewer columns have their pixels divided, so that the reference has not to divide them everywhere.
 const FINE_WIDTH: u32 = 256;
 /// Lines over a texel of the first mip.
@@ -91,7 +90,7 @@ fn luminance_below(environment: &Environment, mip: u32) -> Vec<f64> {
 /// A random texel and 1 over how much likelier it was than in an even choice: even numbers choose evenly, odd ones by
 /// luminance.
 fn chosen(below: &[f64], mip: u32, k: u32) -> (u32, f64) {
-    let mut rng = ItemRng::new(u64::from(mip), PURPOSE, k);
+    let mut rng = ItemRng::new(u64::from(mip), Purpose::EnvironmentTexels, k);
     let all = below.len();
     let index = if k.is_multiple_of(2) {
         rng.below(all as u32) as usize
@@ -134,4 +133,16 @@ pub fn measure(image: &EnvironmentImage, count: u32, environment: &mut Environme
         progress.advance(1);
     }
     progress.end();
+}
+
+/// Variance of [`environment_draw`](super::eval::environment_draw) in luminance over the square of its mean, for facets as `counting`
+/// makes them whole.
+pub fn relative_variance(chances: &Chances, facets: f32) -> f32 {
+    let mean2 = chances.moments[0] * chances.moments[0];
+    if !(mean2 > 0.0 && facets > 0.0) {
+        return 0.0;
+    }
+    let part = facets - facets.floor();
+    let per_facet = (chances.moments[1] / mean2 - 1.0).max(0.0);
+    chances.std_factor * chances.std_factor * per_facet / facets + part * (1.0 - part) / (facets * facets)
 }

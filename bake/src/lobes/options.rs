@@ -2,14 +2,18 @@
 
 use crate::error::{BakeError, Result};
 use crate::normal_map::NormalMap;
-use glint_formats::lobes::{Filter, LobeStorage, MAX_LAST_CELLS, MAX_LOBES_PER_CELL, MAX_TEXTURE_SIZE, Merge};
+use glint_formats::lobes::{
+    Filter, LobeStorage, LobesUniform, MAX_LAST_CELLS, MAX_LOBES_PER_CELL, MAX_TEXTURE_SIZE, Merge,
+};
 
 /// Smallest and largest intrinsic roughness σ_r.
 pub const ROUGHNESS_RANGE: (f64, f64) = (1e-4, 1.0);
 /// Smallest and largest edge of the finest cells, in texels.
 pub const CELL_RANGE: (u32, u32) = (4, 64);
-/// Most texels of a map.
+/// Most texels of a map: their normals fill the largest binding that every GPU has.
 pub const MAX_TEXELS: u64 = 4096 * 4096;
+/// Bytes of a texel's normal and that below it.
+pub(crate) const TEXEL_BYTES: u64 = size_of::<[u32; 2]>() as u64;
 
 /// How the map's normals are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,7 +95,7 @@ impl LobesOptions {
         Ok(())
     }
 
-    /// Bytes of lobes and normals of a map of this size, at most.
+    /// Bytes of the uniform, lobes and normals of a map of this size.
     pub fn most_bytes(&self, width: u32, height: u32) -> u64 {
         let mut cell = self.cell_texels;
         let mut cells = 0;
@@ -103,13 +107,8 @@ impl LobesOptions {
             }
             cell *= 2;
         }
-        let texels = width as u64 * height as u64 * self.most_texel_bytes();
-        cells * self.lobes_per_cell as u64 * self.storage.stride() as u64 + texels
-    }
-
-    /// Bytes of a texel's normal, at most.
-    pub(crate) fn most_texel_bytes(&self) -> u64 {
-        if self.normals == NormalsChoice::Unorm8 { 2 } else { 4 }
+        let texels = (width as u64 * height as u64).next_multiple_of(2) * TEXEL_BYTES;
+        size_of::<LobesUniform>() as u64 + cells * self.lobes_per_cell as u64 * self.storage.stride() as u64 + texels
     }
 
     /// Whether the options make sense.

@@ -5,8 +5,9 @@
 
 use super::baked::{BakedNdfMaps, Material};
 use super::ellipse::REACH;
-use glam::{Mat2, Vec2};
-use glint_formats::Wrap;
+use crate::erf::erf;
+use crate::wrap::{filtered_texels, wrapped};
+use glam::{IVec2, Mat2, Vec2};
 use glint_formats::ndf_maps::DensityStorage;
 use half::f16;
 
@@ -198,10 +199,7 @@ impl BakedNdfMaps {
     /// Projected normal of texel (i, j), wrapped or clamped.
     fn normal(&self, i: i32, j: i32) -> Vec2 {
         let (w, h) = (self.params.width as i32, self.params.height as i32);
-        let (i, j) = match self.params.wrap {
-            Wrap::Repeat => (i.rem_euclid(w), j.rem_euclid(h)),
-            Wrap::Clamp => (i.clamp(0, w - 1), j.clamp(0, h - 1)),
-        };
+        let (i, j) = (wrapped(i, w, self.params.wrap), wrapped(j, h, self.params.wrap));
         let [x, y] = self.normals[(j * w + i) as usize];
         Vec2::new(x as f32 / 32767.0, y as f32 / 32767.0)
     }
@@ -209,10 +207,7 @@ impl BakedNdfMaps {
     /// Bilinear projected normal and Jacobian ∂s/∂u at `u` (example texels); the example repeats as a whole.
     pub fn normal_and_jacobian(&self, u: Vec2) -> (Vec2, Mat2) {
         let size = Vec2::new(self.params.width as f32, self.params.height as f32);
-        let p = u - (u / size).floor() * size - 0.5;
-        let cell = p.floor();
-        let f = p - cell;
-        let (i, j) = (cell.x as i32, cell.y as i32);
+        let (IVec2 { x: i, y: j }, f) = filtered_texels(u - (u / size).floor() * size);
         let (s00, s10) = (self.normal(i, j), self.normal(i + 1, j));
         let (s01, s11) = (self.normal(i, j + 1), self.normal(i + 1, j + 1));
         let top = s00 + (s10 - s00) * f.x;
@@ -231,13 +226,6 @@ fn tent(p: f32) -> Taps {
 /// Φ(x).
 fn normal_cdf(x: f32) -> f32 {
     0.5 * (1.0 + erf(x * std::f32::consts::FRAC_1_SQRT_2))
-}
-
-/// erf by Abramowitz and Stegun 7.1.26 (absolute error 1.5e-7), one exp, as a shader has it.
-fn erf(x: f32) -> f32 {
-    let t = 1.0 / (1.0 + 0.327_591_1 * x.abs());
-    let poly = t * (0.254_829_6 + t * (-0.284_496_74 + t * (1.421_413_7 + t * (-1.453_152_1 + t * 1.061_405_4))));
-    (1.0 - poly * (-x * x).exp()).copysign(x)
 }
 
 /// A box of half width `half` and area 1, convolved with the unit Gaussian, at `x`.

@@ -15,7 +15,7 @@ use super::baked::BakedPlacement;
 use super::options::{PlacementOptions, StochasticOptions, TransformRanges};
 use crate::error::Result;
 use crate::normal_map::NormalMap;
-use crate::rng::ItemRng;
+use crate::rng::{ItemRng, Purpose};
 use glam::{DMat2, DVec2};
 use glint_formats::ndf_maps::{NoiseTexel, PlacementKind, PlacementParams, TransformRecord};
 
@@ -105,8 +105,7 @@ impl Transform {
 
 /// Draws `count` transforms, stratified in every parameter, one seed one result.
 fn draw_palette(ranges: &TransformRanges, count: u32, seed: u64) -> Vec<Transform> {
-    const PURPOSE: u32 = 1;
-    let mut rng = ItemRng::new(seed, PURPOSE, 0);
+    let mut rng = ItemRng::new(seed, Purpose::NdfPalette, 0);
     let orders: Vec<Vec<u32>> = (0..4).map(|_| rng.permutation(count)).collect();
     let mirrored = rng.permutation(count);
     (0..count as usize)
@@ -132,10 +131,9 @@ struct Centre {
 
 impl Centre {
     fn draw(options: &StochasticOptions, cell: u32) -> Centre {
-        const PURPOSE: u32 = 2;
         // Centres keep to the middle of their cell, so that the nearest one is always among the 3 × 3 cells around.
         const JITTER: f64 = 0.75;
-        let mut rng = ItemRng::new(options.seed, PURPOSE, cell);
+        let mut rng = ItemRng::new(options.seed, Purpose::NdfCentres, cell);
         let mut unorm = |spread: f64| ((0.5 + spread * (rng.unit() - 0.5)) * 65535.0).round() as u16;
         let position = [unorm(JITTER), unorm(JITTER)];
         let offset = [unorm(1.0), unorm(1.0)];

@@ -202,7 +202,7 @@ impl Material {
     }
 
     /// Example texels a surface texel, by area, under the transform that has most.
-    pub(super) fn most_texels(&self) -> f32 {
+    pub fn most_texels(&self) -> f32 {
         let palette = 0..self.placement.palette.len() as u32;
         palette.map(|class| self.position_to_local(class).determinant().abs().sqrt()).fold(0.0, f32::max)
     }

@@ -3,8 +3,11 @@
 use glint_formats::Wrap;
 use serde::{Deserialize, Serialize};
 
-use super::crop_rows;
 use crate::error::{BakeError, Result};
+
+/// Vectors shorter than this have no direction. The nearest that 8 bits come to a zero vector, (128, 128, 128), has
+/// length 0.0068.
+pub const ZERO_LENGTH: f64 = 0.01;
 
 /// Which way the map's second channel points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -124,4 +127,21 @@ pub(super) fn check_count(width: u32, height: u32, entries: usize) -> Result<()>
         )));
     }
     Ok(())
+}
+
+/// The texels of a rectangle, row by row.
+pub(super) fn crop_rows<T: Copy>(texels: &[T], of: (u32, u32), from: (u32, u32), size: (u32, u32)) -> Result<Vec<T>> {
+    let inside = |start: u32, length: u32, whole: u32| length > 0 && start as u64 + length as u64 <= whole as u64;
+    if !inside(from.0, size.0, of.0) || !inside(from.1, size.1, of.1) {
+        return Err(BakeError::BadOption(format!(
+            "a crop of {}×{} at ({}, {}) must have at least one texel and lie inside the {}×{} map",
+            size.0, size.1, from.0, from.1, of.0, of.1
+        )));
+    }
+    let mut out = Vec::with_capacity(size.0 as usize * size.1 as usize);
+    for row in from.1..from.1 + size.1 {
+        let start = row as usize * of.0 as usize + from.0 as usize;
+        out.extend_from_slice(&texels[start..start + size.0 as usize]);
+    }
+    Ok(out)
 }

@@ -1,10 +1,16 @@
 //! What a normal map is like: lengths as they came in, then mean, spread, convention, seams of the mended map.
+//!
+//! Is the green axis up or down? A surface has no curl, and a flipped axis breaks that.
+//!
+//! Over a height field with y up, ∂m_x/∂y = ∂m_y/∂x: the two cross derivatives are equal, their correlation is +1.
+//! With green flipped it is −1. Projected normals stand in for slopes: they behave alike and have no poles at the
+//! horizon. Real maps give 0.4 to 0.95 in size; flat and flake maps next to nothing, for those are no height fields.
 
 use glint_formats::Wrap;
 use serde::Serialize;
 
-use super::{NormalMap, convention};
-use crate::normal_map::ZERO_LENGTH;
+use super::map::NormalMap;
+use super::raw::ZERO_LENGTH;
 
 /// A seam is suspected where the step across it is this many times the mean step between neighbours inside, and
 /// larger than any of those.
@@ -13,6 +19,12 @@ pub const SEAM_RATIO: f64 = 2.0;
 /// Spread of the projected normal (any texel's distance from the mean) up to which a map is called flat: all texels
 /// equal but for ±1 in 8 bits, a step being 2/255.
 const FLAT: f64 = 1.5 * 2.0 / 255.0;
+
+/// Correlation below which green is called flipped. Real DirectX maps lie at −0.4 and lower.
+const FLIPPED_BELOW: f64 = -0.3;
+
+/// Texels below which nothing is concluded: few texels hold few independent ones.
+const ENOUGH_TEXELS: u64 = 4096;
 
 /// What was found in a normal map. Lengths and counts describe the input, all else the validated map (+Y up).
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -89,7 +101,7 @@ impl NormalReport {
     /// Measures a validated map, given the tally of its input.
     pub(super) fn measure(map: &NormalMap, lengths: &Lengths) -> NormalReport {
         let moments = Moments::of(map);
-        let curl_correlation = convention::curl_correlation(map);
+        let curl_correlation = curl_correlation(map);
         let (seam_u, seam_v) = (seam_u(map), seam_v(map));
         let visible = |seam: Option<SeamRatio>| seam.is_some_and(|s| s.to_mean > SEAM_RATIO && s.to_largest > 1.0);
         NormalReport {
@@ -102,7 +114,7 @@ impl NormalReport {
             mean_normal: moments.mean_normal,
             slope_std: moments.slope_std,
             curl_correlation,
-            flipped_green_suspected: convention::flipped_green(map, curl_correlation),
+            flipped_green_suspected: flipped_green(map, curl_correlation),
             seam_u,
             seam_v,
             seam_suspected: map.wrap == Wrap::Repeat && (visible(seam_u) || visible(seam_v)),
@@ -139,6 +151,30 @@ impl Moments {
         }
         Moments { mean_normal: mean, slope_std: variance.map(f64::sqrt), spread }
     }
+}
+
+/// Correlation, over the interior texels, of ∂s_x/∂y with ∂s_y/∂x by central differences (y = −v). None when there are
+/// no interior texels or a derivative does not vary.
+fn curl_correlation(map: &NormalMap) -> Option<f64> {
+    let (mut aa, mut bb, mut ab) = (0.0, 0.0, 0.0);
+    for j in 1..map.height as i64 - 1 {
+        for i in 1..map.width as i64 - 1 {
+            // The common factor ½ of the differences cancels.
+            let a = map.texel(i, j - 1).x - map.texel(i, j + 1).x;
+            let b = map.texel(i + 1, j).y - map.texel(i - 1, j).y;
+            aa += a * a;
+            bb += b * b;
+            ab += a * b;
+        }
+    }
+    let scale = (aa * bb).sqrt();
+    (scale > 0.0).then(|| ab / scale)
+}
+
+/// True when the correlation says so and there is enough to go by.
+fn flipped_green(map: &NormalMap, curl_correlation: Option<f64>) -> bool {
+    let enough = map.width as u64 * map.height as u64 >= ENOUGH_TEXELS;
+    enough && curl_correlation.is_some_and(|c| c < FLIPPED_BELOW)
 }
 
 fn seam_u(map: &NormalMap) -> Option<SeamRatio> {

@@ -3,6 +3,8 @@
 use std::f32::consts::FRAC_1_SQRT_2;
 
 use super::*;
+use crate::error::BakeError;
+use glint_formats::Wrap;
 
 const UP: NormalOptions = NormalOptions { wrap: Wrap::Repeat, y: GreenAxis::Up };
 

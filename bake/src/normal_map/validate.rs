@@ -4,17 +4,13 @@
 //! (flat then), normals at or below the horizon (pushed just above it). Refused: NaN and infinities, too many zero
 //! lengths, a map most of which lies below the horizon.
 
-use super::raw::check_count;
+use super::map::NormalMap;
+use super::raw::{GreenAxis, NormalOptions, RawNormals, ZERO_LENGTH, check_count};
 use super::report::{Lengths, NormalReport};
-use super::{GreenAxis, NormalMap, NormalOptions, RawNormals};
 use crate::error::{BakeError, Result};
 
 /// Largest |s| of a projected normal: just inside the disk, so that z = √(1 − |s|²) stays away from 0.
 pub const HORIZON: f64 = 1.0 - 1e-4;
-
-/// Vectors shorter than this have no direction. The nearest that 8 bits come to a zero vector, (128, 128, 128), has
-/// length 0.0068.
-pub const ZERO_LENGTH: f64 = 0.01;
 
 /// Share of zero-length vectors above which a map is refused.
 pub const MAX_ZERO_LENGTH: f64 = 0.01;
@@ -103,7 +99,7 @@ fn refuse_if_no_normal_map(lengths: &Lengths) -> Result<()> {
     if share(lengths.zero) > MAX_ZERO_LENGTH {
         return Err(BakeError::BadInput(format!(
             "this is not a normal map: {} of {} texels are the zero vector (mid-grey), at most {:.0} % may be; \
-             a height map needs --height",
+             if these are heights, read them as a height map",
             lengths.zero,
             lengths.texels,
             MAX_ZERO_LENGTH * 100.0

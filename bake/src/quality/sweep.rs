@@ -1,7 +1,7 @@
 //! The footprints that error is measured over, the same for every method.
 
 use crate::footprint::Footprint;
-use crate::rng::ItemRng;
+use crate::rng::{ItemRng, Purpose};
 use glam::DVec2;
 
 /// Standard deviations of footprints along their minor axis, in texels.
@@ -13,10 +13,9 @@ pub const FOOTPRINTS: u32 = 64;
 
 /// `count` seeded random footprints of one size on a surface of `extent` texels: any place, any direction.
 pub fn footprints(sigma_texels: f64, anisotropy: f64, extent: DVec2, count: u32, seed: u64) -> Vec<Footprint> {
-    const PURPOSE: u32 = 3;
     (0..count)
         .map(|k| {
-            let mut rng = ItemRng::new(seed, PURPOSE, k);
+            let mut rng = ItemRng::new(seed, Purpose::MeasuredFootprints, k);
             let mean = DVec2::new(rng.unit(), rng.unit()) * extent;
             Footprint::new(mean, sigma_texels, anisotropy, rng.unit() * std::f64::consts::PI)
         })

@@ -8,12 +8,13 @@ use super::{Surface, quality, whole};
 use crate::error::{BakeError, Result};
 use crate::lobes::bake as levels;
 use crate::lobes::gaussian::Gaussian4;
+use crate::lobes::options::TEXEL_BYTES;
 use crate::lobes::{BakedLobes, LobesOptions};
 use crate::normal_map::NormalMap;
 use crate::progress::Progress;
 use crate::synthesis::{self, SynthesisOptions};
 use glint_formats::Wrap;
-use glint_formats::lobes::{LobeLevel, MAX_LAST_CELLS};
+use glint_formats::lobes::{BEYOND_RIM, LobeLevel, LobesUniform, MAX_LAST_CELLS};
 use rayon::prelude::*;
 use std::borrow::Cow;
 
@@ -39,6 +40,7 @@ pub fn bake(
     let mut baked = levels::without_levels(&sample, lobes);
     baked.params.step_texels = synthesis.params.alignment;
     build_levels(&sample, lobes, &synthesis, &mut baked, progress);
+    baked.params.rim_roughness = baked.rim_roughness(BEYOND_RIM);
     let mut surface = Surface { lobes: baked, synthesis };
     let roughness = levels::measured_roughness(&surface.lobes, lobes);
     surface.lobes.params.measured_roughness = roughness as f32;
@@ -73,8 +75,9 @@ pub fn most_bytes(width: u32, height: u32, lobes: &LobesOptions, synthesis: &Syn
         width.div_ceil(step) as u64 * height.div_ceil(step) as u64
     };
     let cells: u64 = edges(lobes.cell_texels, synthesis.patch).map(stored).sum();
-    let texels = width as u64 * height as u64 * lobes.most_texel_bytes();
-    (cells + MAX_LAST_CELLS as u64) * lobes.lobes_per_cell as u64 * lobes.storage.stride() as u64
+    let texels = width as u64 * height as u64 * TEXEL_BYTES;
+    size_of::<LobesUniform>() as u64
+        + (cells + MAX_LAST_CELLS as u64) * lobes.lobes_per_cell as u64 * lobes.storage.stride() as u64
         + texels
         + synthesis.most_bytes()
 }

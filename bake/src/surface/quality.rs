@@ -4,13 +4,14 @@ use super::{Surface, SurfaceSettings};
 use crate::footprint::Footprint;
 use crate::lobes::LobesOptions;
 use crate::lobes::bake::{MEASURED_REFINEMENT, MEASURED_SIGMAS, measured_footprints};
-use crate::lobes::quality::{FootprintErrors, STRIDE, difference};
-use crate::lobes::query::{Detail, Gathered};
+use crate::lobes::quality::{FootprintErrors, Gathered, STRIDE, difference};
+use crate::lobes::query::Detail;
 use crate::lobes::reference::Reference;
 use crate::normal_map::NormalMap;
 use crate::progress::Progress;
 use crate::quality::metrics::Summary;
 use crate::quality::sweep;
+use crate::rng::{ItemRng, Purpose};
 use crate::synthesis::assemble;
 use glam::DVec2;
 use glint_formats::lobes::{Filter, FootprintError};
@@ -123,7 +124,6 @@ pub(super) fn measure(
 /// `count` seeded footprints of `sigma` texels on a seam between two patches, or, if `inside`, in the middle of patches;
 /// each is half the time under a corner of patches, or in the middle of both axes.
 pub fn seam_footprints(surface: &Surface, sigma: f64, count: u32, seed: u64, inside: bool) -> Vec<Footprint> {
-    const PURPOSE: u32 = 9;
     let params = &surface.synthesis.params;
     let (patch, overlap) = (f64::from(params.patch), f64::from(params.overlap));
     let (seam, middle, free) = match params.layout {
@@ -136,9 +136,9 @@ pub fn seam_footprints(surface: &Surface, sigma: f64, count: u32, seed: u64, ins
     let clear = (0.5 * free - 2.0 * sigma).max(0.0);
     (0..count)
         .map(|k| {
-            let mut rng = crate::rng::ItemRng::new(seed, PURPOSE, k);
+            let mut rng = ItemRng::new(seed, Purpose::SurfaceFootprints, k);
             let tile = DVec2::new(f64::from(rng.below(16)), f64::from(rng.below(16))) * patch;
-            let jitter = |rng: &mut crate::rng::ItemRng| 2.0 * rng.unit() - 1.0;
+            let jitter = |rng: &mut ItemRng| 2.0 * rng.unit() - 1.0;
             let place = if inside {
                 DVec2::new(middle + clear * jitter(&mut rng), middle + clear * jitter(&mut rng))
             } else {

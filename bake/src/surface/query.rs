@@ -8,10 +8,10 @@
 
 use super::Surface;
 use crate::footprint::Footprint;
-use crate::lobes::eval::{self, Frame, SeenLobe};
-use crate::lobes::quantise::{Lobe, Scales};
-use crate::lobes::query::{Detail, Gathered, Lod, QuerySettings, bilinear};
-use crate::lobes::span::span_x;
+use crate::lobes::boxes::bilinear;
+use crate::lobes::eval::{self, Frame, Lobe, Patch, Query, SeenLobe, ellipse, frame, query, row};
+use crate::lobes::quality::Gathered;
+use crate::lobes::query::{Detail, Lod, QuerySettings};
 use glam::{DVec2, Mat2, Vec2};
 use glint_formats::Wrap;
 use glint_formats::lobes::Filter;
@@ -79,7 +79,7 @@ struct View {
 struct SurfaceQuery<'a, V: FnMut(&SeenLobe)> {
     surface: &'a Surface,
     view: View,
-    roughness: f32,
+    query: Query,
     settings: &'a SurfaceSettings,
     visit: V,
 }
@@ -98,12 +98,13 @@ impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
             Detail::Boxes(edge) => (edge, self.box_origin()),
         };
         let index = |x: f32| ((x - origin) / edge).floor() as i32;
-        let top = frame.reach_y(reach);
+        let ellipse = ellipse(&frame, reach);
+        let top = ellipse.top;
         let mut visited = 0;
         for j in index(frame.mean.y - top)..=index(frame.mean.y + top) {
             let y = origin + j as f32 * edge;
-            let Some((x0, x1)) = span_x(&frame, reach, y, y + edge) else { continue };
-            for i in index(x0)..=index(x1) {
+            let row = row(&ellipse, origin, edge, y);
+            for i in row.0..=row.1 {
                 match detail {
                     Detail::Cells(level) if self.settings.whole_blocks => {
                         self.add_nominal_block(level, [i * edge as i32, j * edge as i32]);
@@ -198,12 +199,12 @@ impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
         let params = &lobes.params;
         let grid = &params.levels[level];
         let step = params.step(grid.cell_texels);
-        let scales = Scales::new(params, grid);
+        let stored = lobes.level(level);
         let first = grid.first_lobe + (source[1] / step * grid.cells_x + source[0] / step) * params.lobes_per_cell;
         let corner = Vec2::new(at[0] as f32, at[1] as f32);
         let [x, y] = self.on_surface(at);
         for index in first..first + params.lobes_per_cell {
-            let lobe = lobes.lobe(index, &scales);
+            let lobe = lobes.lobe(&stored, index);
             if lobe.weight <= 0.0 {
                 continue;
             }
@@ -228,21 +229,20 @@ impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
     /// Adds a lobe whose position is relative to `corner`.
     fn add_lobe(&mut self, lobe: &Lobe, corner: Vec2) {
         let d = self.view.frame.mean - corner - lobe.position;
-        (self.visit)(&eval::seen(lobe, d, &self.view.frame, self.roughness));
+        (self.visit)(&eval::seen(&self.query, lobe, d));
     }
 
     /// Adds the box of this width and height around `centre`.
     fn add_box(&mut self, centre: Vec2, size: Vec2) {
-        let (normal, jacobian, twist) =
-            if self.settings.whole_blocks { self.nominal_patch_at(centre) } else { self.patch_at(centre) };
-        self.add_lobe(&eval::box_lobe(normal, jacobian, twist, size), centre);
+        let place = if self.settings.whole_blocks { self.nominal_patch_at(centre) } else { self.patch_at(centre) };
+        self.add_lobe(&eval::box_lobe(&place, size), centre);
     }
 
     /// Adds the box of this width and height around `centre`, halved along each axis over which its normals spread so far
     /// that they are no Gaussian: cells beside it hold lobes of fewer normals.
     fn add_halved(&mut self, centre: Vec2, size: Vec2) {
-        let (normal, jacobian, twist) = self.patch_at(centre);
-        let most = self.settings.box_range * self.roughness;
+        let Patch { normal, jacobian, twist } = self.patch_at(centre);
+        let most = self.settings.box_range * self.query.roughness;
         let ranges = [jacobian.x_axis.length() * size.x, jacobian.y_axis.length() * size.y];
         // Larger footprints see many boxes: there only the wider range is halved.
         let least = if self.view.frame.major <= self.settings.halves_until { 0.0 } else { ranges[0].max(ranges[1]) };
@@ -253,14 +253,15 @@ impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
                 let d = part * (Vec2::new(i as f32, j as f32) + 0.5) - 0.5 * size;
                 let here = normal + jacobian * d + twist * (d.x * d.y);
                 let slopes = jacobian + Mat2::from_cols(twist * d.y, twist * d.x);
-                self.add_lobe(&eval::box_lobe(here, slopes, twist, part), centre + d);
+                let place = Patch { normal: here, jacobian: slopes, twist };
+                self.add_lobe(&eval::box_lobe(&place, part), centre + d);
             }
         }
     }
 
     /// Normal, Jacobian and twist of the surface at a place.
-    fn patch_at(&self, u: Vec2) -> (Vec2, Mat2, Vec2) {
-        bilinear(self.surface.lobes.params.filter, u, |i, j| {
+    fn patch_at(&self, u: Vec2) -> Patch {
+        filtered(self.surface.lobes.params.filter, u, |i, j| {
             let [x, y] = self.on_surface([i, j]);
             let (sx, sy) = self.surface.synthesis.source_texel(x, y);
             self.surface.lobes.texel(sx as i32, sy as i32)
@@ -268,25 +269,38 @@ impl<V: FnMut(&SeenLobe)> SurfaceQuery<'_, V> {
     }
 
     /// The same as if the patch that shows the footprint's middle showed all places.
-    fn nominal_patch_at(&self, u: Vec2) -> (Vec2, Mat2, Vec2) {
+    fn nominal_patch_at(&self, u: Vec2) -> Patch {
         let middle = self.view.frame.mean.floor();
         let (i0, j0) = (middle.x as i32, middle.y as i32);
         let [x, y] = self.on_surface([i0, j0]);
         let (sx, sy) = self.surface.synthesis.source_texel(x, y);
-        bilinear(self.surface.lobes.params.filter, u, |i, j| {
+        filtered(self.surface.lobes.params.filter, u, |i, j| {
             self.surface.lobes.texel(sx as i32 + i - i0, sy as i32 + j - j0)
         })
     }
 
     /// Adds the lobes of the last level, every place alike.
     fn add_whole(&mut self) -> u32 {
-        self.surface.lobes.visit_whole(self.roughness, &mut self.visit);
+        let lobes = &self.surface.lobes;
+        lobes.cells(&self.query, &lobes.level(lobes.params.levels.len() - 1), 0.0, true, &mut self.visit);
         1
     }
 
     fn on_surface(&self, at: [i32; 2]) -> [i32; 2] {
         [self.view.origin[0].wrapping_add(at[0]), self.view.origin[1].wrapping_add(at[1])]
     }
+}
+
+/// The bilinear patch of texels at a place, or the nearest texel, which has no slopes.
+fn filtered(filter: Filter, u: Vec2, texel: impl Fn(i32, i32) -> Vec2) -> Patch {
+    if filter == Filter::Nearest {
+        let normal = texel(u.x.floor() as i32, u.y.floor() as i32);
+        return Patch { normal, jacobian: Mat2::ZERO, twist: Vec2::ZERO };
+    }
+    let p = u - 0.5;
+    let cell = p.floor();
+    let (i, j) = (cell.x as i32, cell.y as i32);
+    bilinear(texel(i, j), texel(i + 1, j), texel(i, j + 1), texel(i + 1, j + 1), p - cell)
 }
 
 impl Surface {
@@ -305,14 +319,14 @@ impl Surface {
             sum += seen.density(s);
             share += seen.share;
         };
-        SurfaceQuery { surface: self, view, roughness, settings, visit }.add(detail);
+        SurfaceQuery { surface: self, view, query: query(view.frame, roughness), settings, visit }.add(detail);
         (sum, share)
     }
 
     /// The lobes that a footprint sees, shares summing to 1.
     pub fn gather(&self, footprint: &Footprint, roughness: f32, settings: &SurfaceSettings) -> Gathered {
         let view = self.view(footprint);
-        self.lod(&view, settings).gather(|list, detail| self.add(list, view, detail, roughness, settings))
+        Gathered::of(&self.lod(&view, settings), |list, detail| self.add(list, view, detail, roughness, settings))
     }
 
     /// The lobes that a footprint sees at one level.
@@ -339,7 +353,7 @@ impl Surface {
         settings: &SurfaceSettings,
     ) -> u32 {
         let visit = |seen: &SeenLobe| list.push(*seen);
-        SurfaceQuery { surface: self, view, roughness, settings, visit }.add(detail)
+        SurfaceQuery { surface: self, view, query: query(view.frame, roughness), settings, visit }.add(detail)
     }
 
     /// The levels that serve a footprint; the last of the lobes is the whole surface.
@@ -367,7 +381,7 @@ impl Surface {
         };
         let (x, left) = block(footprint.mean.x, period[0]);
         let (y, upper) = block(footprint.mean.y, period[1]);
-        View { frame: Frame::new(&Footprint { mean: DVec2::new(x, y), ..*footprint }), origin: [left, upper] }
+        View { frame: frame(&Footprint { mean: DVec2::new(x, y), ..*footprint }), origin: [left, upper] }
     }
 
     /// Cells of `edge` texels of the patches that the block at surface texel `at` shows at its corners, and their number.

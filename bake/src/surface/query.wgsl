@@ -40,12 +40,12 @@ struct GlintSurfaceQuery {
 }
 
 fn glint_surface_default_settings() -> GlintSurfaceSettings {
-    return GlintSurfaceSettings(glint_lobes_default_settings(), 32.0, 14.0, 2.0, 6.0);
+    return GlintSurfaceSettings(glint_lobes_default(), 32.0, 14.0, 2.0, 6.0);
 }
 
 // Few lobes, for pictures, with glint_surface_blocks.wgsl.
 fn glint_surface_realtime_settings() -> GlintSurfaceSettings {
-    return GlintSurfaceSettings(glint_lobes_realtime_settings(), 32.0, 14.0, 2.0, 6.0);
+    return GlintSurfaceSettings(glint_lobes_realtime(), 32.0, 14.0, 2.0, 6.0);
 }
 
 // Texels from one cell of `cell_texels` to the next.

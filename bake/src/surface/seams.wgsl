@@ -102,11 +102,11 @@ fn glint_surface_boxes(q: GlintSurfaceQuery, edge: f32) -> vec2f {
     return sum;
 }
 
-// Offset of a quarter of a lobe from its mean, by its signs along the columns of the spread. Four quarters have the lobe's
+// Offset of a quarter of a lobe from its mean, by its signs along the columns of the factor. Four quarters have the lobe's
 // moments.
 fn glint_lobes_quarter_offset(lobe: GlintLobe, signs: vec2f) -> vec2f {
     let d = signs * 0.8660254;
-    return vec2f(lobe.spread.x * d.x, lobe.spread.y * d.x + lobe.spread.z * d.y);
+    return vec2f(lobe.factor.x * d.x, lobe.factor.y * d.x + lobe.factor.z * d.y);
 }
 
 // The part of a lobe that is made of `count` of its quarters, whose signs sum to `signs`.
@@ -119,7 +119,7 @@ fn glint_lobes_part_of(lobe: GlintLobe, count: f32, signs: vec2f) -> GlintLobe {
         0.25 * count * lobe.weight,
         lobe.position + d,
         lobe.normal + lobe.jacobian * d,
-        lobe.spread * narrow.xxy,
+        lobe.factor * narrow.xxy,
         lobe.jacobian,
         lobe.residual,
     );

@@ -5,7 +5,7 @@
 use crate::lobes::LobesOptions;
 use crate::lobes::gaussian::Gaussian4;
 use crate::lobes::merge::{self, MergeSettings};
-use crate::rng::ItemRng;
+use crate::rng::{ItemRng, Purpose};
 use crate::synthesis::Synthesis;
 use glam::{DMat2, DVec2};
 use glint_formats::lobes::{LobeLevel, MAX_LAST_CELLS};
@@ -16,8 +16,6 @@ use rayon::prelude::*;
 const MOST_PATCHES: u32 = 64;
 /// Cells whose lobes are reduced at a time.
 const GROUP: usize = 4;
-/// Purpose of the random numbers of k-means here.
-const PURPOSE: u32 = 8;
 
 /// Lobes of the whole surface, at most those of [`MAX_LAST_CELLS`] cells, from the cells of the finest stored level, which begin at multiples of `step`.
 pub(super) fn reduce(
@@ -38,7 +36,14 @@ pub(super) fn reduce(
             .iter()
             .map(|lobe| {
                 let weight = lobe.weight * f64::from(count);
-                Gaussian4::of_surface(weight, middle, DMat2::IDENTITY, lobe.normal(), DMat2::ZERO, lobe.normals())
+                Gaussian4::of_surface(
+                    weight,
+                    middle,
+                    DMat2::IDENTITY,
+                    lobe.normal(),
+                    DMat2::ZERO,
+                    lobe.normal_covariance(),
+                )
             })
             .collect()
     };
@@ -51,7 +56,7 @@ pub(super) fn reduce(
             .par_chunks(GROUP)
             .enumerate()
             .map(|(at, group)| {
-                let mut rng = ItemRng::new(options.seed, PURPOSE + (round << 8), at as u32);
+                let mut rng = ItemRng::new(options.seed, Purpose::SurfaceLobes(round), at as u32);
                 merge::reduce(&group.concat(), &settings, &mut rng)
             })
             .collect();

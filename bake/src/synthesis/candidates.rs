@@ -2,12 +2,9 @@
 
 use super::options::SynthesisOptions;
 use crate::normal_map::NormalMap;
-use crate::rng::ItemRng;
+use crate::rng::{ItemRng, Purpose};
 use glint_formats::Wrap;
 use std::collections::BTreeSet;
-
-/// Purpose of the random numbers that thin out candidates.
-const PURPOSE: u32 = 50;
 
 /// How much of a patch another shows too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -39,7 +36,7 @@ impl Candidates {
         let (columns, rows) = (axis(sample.width), axis(sample.height));
         let all = columns.len() as u32 * rows.len() as u32;
         let wanted = options.max_candidates;
-        let mut rng = ItemRng::new(options.seed, PURPOSE, 0);
+        let mut rng = ItemRng::new(options.seed, Purpose::Candidates, 0);
         let mut picked: Vec<u32> = if all <= wanted {
             (0..all).collect()
         } else if all / 4 <= wanted {

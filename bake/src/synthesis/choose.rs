@@ -19,11 +19,8 @@ use super::cut_errors::CutErrors;
 use super::runs::Runs;
 use super::strips::PairErrors;
 use crate::progress::Progress;
-use crate::rng::ItemRng;
+use crate::rng::{ItemRng, Purpose};
 use rayon::prelude::*;
-
-/// Purpose of the random numbers that choose patches.
-pub(super) const PURPOSE: u32 = 51;
 
 /// Candidates whose cuts are looked at for a patch. Of 512² texels of scratches and an overlap of 24, 200 are no better.
 pub const SHORTLIST: usize = 64;
@@ -121,7 +118,7 @@ impl Choice<'_> {
         let cuts: Vec<f64> = among.par_iter().map(cut).collect();
         let least = cuts.iter().copied().fold(f64::INFINITY, f64::min);
         let limit = (self.tolerance * overlaps.len() as f64).max(least * (1.0 + SLACK));
-        pick(&among, &cuts, limit, used, &mut ItemRng::new(self.seed, PURPOSE, at))
+        pick(&among, &cuts, limit, used, &mut ItemRng::new(self.seed, Purpose::Patches, at))
     }
 
     /// Overlaps of the patch with neighbours that are placed already, on the torus.

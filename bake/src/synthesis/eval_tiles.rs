@@ -2,7 +2,7 @@
 
 use super::Synthesis;
 use super::eval::Place;
-use crate::dictionary::hash::{cell_state, draw_bits};
+use crate::hash::{cell_state, draw_bits};
 
 /// Layout of corner tiles.
 #[derive(Clone, Copy)]

@@ -6,10 +6,10 @@ mod images;
 
 pub use images::{Image, entries, pasted, pasted_tiles};
 
-use super::choose::{CROWDING, PURPOSE, Radii, SHORTLIST};
+use super::choose::{CROWDING, Radii, SHORTLIST};
 use super::options::SynthesisOptions;
 use crate::normal_map::NormalMap;
-use crate::rng::ItemRng;
+use crate::rng::{ItemRng, Purpose};
 use glint_formats::Wrap;
 
 /// Sample texel (column, row).
@@ -189,7 +189,7 @@ pub fn choose(
         let good: Vec<usize> = listed.into_iter().filter(|&c| cuts[c] <= limit).collect();
         let fewest = good.iter().map(|&c| used[c]).min().expect("the best is among them");
         let equal: Vec<usize> = good.into_iter().filter(|&c| used[c] == fewest).collect();
-        let draw = ItemRng::new(options.seed, PURPOSE, at).below(equal.len() as u32);
+        let draw = ItemRng::new(options.seed, Purpose::Patches, at).below(equal.len() as u32);
         used[equal[draw as usize]] += 1;
         placed.push(equal[draw as usize]);
     }

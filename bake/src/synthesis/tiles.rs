@@ -17,14 +17,10 @@ use super::options::SynthesisOptions;
 use super::seams::{cut, push_path};
 use super::strips::sum_of_squares;
 use crate::progress::Progress;
-use crate::rng::ItemRng;
+use crate::rng::{ItemRng, Purpose};
 use glint_formats::synthesis::Layout;
 use rayon::prelude::*;
 
-/// Purpose of the random numbers that choose middle patches.
-const PURPOSE: u32 = 52;
-/// Purpose of the random numbers that choose corner patches.
-const PURPOSE_CORNERS: u32 = 53;
 /// A middle patch is one of the best 1 / [`BEST_OF`] of the candidates: the best alone would be the same few everywhere.
 const BEST_OF: usize = 8;
 /// A middle patch that has been seen once, before it is divided among those that resemble it.
@@ -126,7 +122,7 @@ impl Frame<'_> {
     /// tile would show it.
     fn corner_patches(&self, colours: usize, seed: u64) -> Vec<usize> {
         let drawn = |draw: u32| {
-            let mut rng = ItemRng::new(seed, PURPOSE_CORNERS, draw);
+            let mut rng = ItemRng::new(seed, Purpose::CornerPatches, draw);
             let mut picked: Vec<usize> = Vec::new();
             while picked.len() < colours {
                 let mut from: Vec<usize> = (0..self.candidates.len()).filter(|&c| self.apart(c, &picked)).collect();
@@ -259,7 +255,7 @@ impl Base<'_> {
                 let barred: Vec<bool> = (0..count)
                     .map(|c| corners.iter().chain(siblings).any(|&other| frame.candidates.alike(c, other)))
                     .collect();
-                let mut rng = ItemRng::new(options.seed, PURPOSE, picked.len() as u32);
+                let mut rng = ItemRng::new(options.seed, Purpose::MiddlePatches, picked.len() as u32);
                 let among = allowed(&barred);
                 let errors: Vec<f64> = among.iter().map(|&c| errors[c]).collect();
                 let mut sorted = errors.clone();

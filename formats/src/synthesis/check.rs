@@ -3,7 +3,7 @@
 use crate::bytes::{u16_at, u32_at};
 use crate::container::Resource;
 use crate::issue::{Issue, IssueCode};
-use crate::lobes::{self, LobesParams};
+use crate::lobes::{self, LobesParams, LobesUniform};
 use crate::params;
 use crate::sections::{Loaded, Sections};
 use crate::synthesis::{
@@ -187,6 +187,13 @@ fn check_surfaces(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
         let Some(surface) = decoded::<SynthesisParams>(surface.payload) else { continue };
         if let Err(why) = check_surface(&params, &surface) {
             issues.push(section.error(IssueCode::SurfaceMismatch, why));
+            continue;
+        }
+        let Some(uniform) = sections.get(lobes::UNIFORM, &section.entry.name) else { continue };
+        let found = bytemuck::try_pod_read_unaligned::<LobesUniform>(uniform.payload);
+        if found.is_ok_and(|found| found.synthesis != surface.uniform()) {
+            let message = "the part of the synthesis differs from the parameters of the synthesis";
+            issues.push(uniform.error(IssueCode::LobesUniform, message));
         }
     }
 }

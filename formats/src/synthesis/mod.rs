@@ -1,13 +1,14 @@
 //! Typed sections of patch synthesis: where each patch of a large surface lies in a small sample, and along which seams
 //! patches meet.
 //!
-//! Method: Tan et al. 2022, section 5.1.1; what we store differs from the paper as `docs/METHODS.md` says. Nothing here
+//! Method: Tan et al. 2022, section 5.1.1; what we store differs from the paper as `docs/methods/surface.md` says. Nothing here
 //! depends on what a texel holds: normals, lobes and their MIP are read through the same look-up.
 
 pub(crate) mod check;
 
 use crate::container::{FourCc, KnownKind};
 use crate::wrap::Wrap;
+use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of a synthesis: [`SynthesisParams`], bincode.
@@ -104,6 +105,50 @@ pub struct SynthesisParams {
     pub measured: MeasuredError,
 }
 
+/// [`SynthesisUniform::arrangement`] of [`Layout::Patches`].
+pub const PATCHES: u32 = 0;
+/// [`SynthesisUniform::arrangement`] of [`Layout::CornerTiles`].
+pub const CORNER_TILES: u32 = 1;
+
+/// `GlintSynthesis` of the shaders, a part of the section [`crate::lobes::UNIFORM`] of the same name: all that a look-up needs to know besides offsets and seams.
+/// Fields that the arrangement has no use for are 0.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct SynthesisUniform {
+    /// Width of the sample in texels.
+    pub sample_width: u32,
+    /// Height of the sample in texels.
+    pub sample_height: u32,
+    /// 0: patches may cross the sample's edge; 1: they may not.
+    pub wrap: u32,
+    /// Edge of a patch (or tile) in texels.
+    pub patch_texels: u32,
+    /// Texels over which patches overlap.
+    pub overlap: u32,
+    /// [`PATCHES`] or [`CORNER_TILES`].
+    pub arrangement: u32,
+    /// Columns of patches after which the surface repeats, of a grid of patches.
+    pub columns: u32,
+    /// Rows of patches after which the surface repeats, of a grid of patches.
+    pub rows: u32,
+    /// Number of corner colours, of corner tiles.
+    pub colours: u32,
+    /// Tiles for the same four colours, of corner tiles.
+    pub variants: u32,
+    /// Texels between the edge of a tile and its middle patch, of corner tiles.
+    pub margin: u32,
+    /// Seed of the hash, of corner tiles.
+    pub hash_seed: u32,
+    /// Bits of a path's entry, 0 where there is no choice: [`PathShape::bits`].
+    pub path_bits: u32,
+    /// Entries in a word of a path, 0 where there is no choice: [`PathShape::per_word`].
+    pub path_per_word: u32,
+    /// Words of a path of a patch of the grid, or around the middle patch of a tile.
+    pub path_words: u32,
+    /// Words of a path between two corner colours, of corner tiles.
+    pub colour_path_words: u32,
+}
+
 /// How a seam path is packed: `per_word` entries of `bits` bits in a u32, the first in the lowest bits.
 ///
 /// An entry is the number of overlap texels of its row (or column) that the older patch keeps, 0 to overlap − 1.
@@ -130,6 +175,40 @@ impl PathShape {
 }
 
 impl SynthesisParams {
+    /// What shaders read of these parameters.
+    pub fn uniform(&self) -> SynthesisUniform {
+        let shape = self.patch_path();
+        let uniform = SynthesisUniform {
+            sample_width: self.sample_width,
+            sample_height: self.sample_height,
+            wrap: match self.wrap {
+                Wrap::Repeat => 0,
+                Wrap::Clamp => 1,
+            },
+            patch_texels: self.patch,
+            overlap: self.overlap,
+            path_bits: shape.bits,
+            path_per_word: shape.per_word,
+            path_words: shape.words,
+            ..SynthesisUniform::default()
+        };
+        match self.layout {
+            Layout::Patches { columns, rows, .. } => {
+                SynthesisUniform { arrangement: PATCHES, columns, rows, ..uniform }
+            }
+            Layout::CornerTiles { colours, variants, margin, hash_seed } => SynthesisUniform {
+                arrangement: CORNER_TILES,
+                colours,
+                variants,
+                margin,
+                hash_seed,
+                path_words: self.middle_path(margin).words,
+                colour_path_words: self.colour_path(margin).words,
+                ..uniform
+            },
+        }
+    }
+
     /// Paths of a patch of the grid: left, then upper.
     pub fn patch_path(&self) -> PathShape {
         PathShape::new(self.patch + self.overlap, self.overlap)

@@ -119,7 +119,7 @@ impl Tables {
             reach_words: self.word(bytemuck::cast_slice(&reach::mask(material))),
             blocks: u32::from(blocks.is_some()),
             few_tiles: 0,
-            most_texels: material.most_example_texels(),
+            most_texels: material.most_texels(),
         }
     }
 }

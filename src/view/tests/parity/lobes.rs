@@ -6,13 +6,14 @@ use glam::{DVec2, Vec2};
 use glint_bake_core::footprint::Footprint;
 use glint_bake_core::lobes::options::NormalsChoice;
 use glint_bake_core::lobes::query::QuerySettings;
+use glint_bake_core::lobes::sections::to_sections;
 use glint_bake_core::lobes::{BakedLobes, LobesOptions, bake};
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
-use glint_formats::Wrap;
-use glint_formats::lobes::{Filter, LobeStorage};
-use glint_view::gpu::{Gpu, answer};
-use glint_view::methods::lobes::{modules, upload};
+use glint_formats::lobes::{BINDINGS, Filter, LobeStorage};
+use glint_formats::{Codec, Wrap};
+use glint_view::gpu::{Gpu, Resources, answer, bind_sections};
+use glint_view::methods::lobes::modules;
 use rand::{Rng, RngExt};
 
 /// Most lobes and boxes that a query may see: Mesa's software adapter silently ends a program after 65 535 steps of all its loops
@@ -68,6 +69,11 @@ struct Query {
     place: Place,
     settings: Settings,
     end: u32,
+}
+
+/// The sections of lobes as a pack has them, bound.
+fn bound(gpu: &Gpu, lobes: &BakedLobes) -> Resources {
+    bind_sections(gpu, &to_sections("", lobes, Codec::None), BINDINGS, lobes.params.wrap).unwrap()
 }
 
 /// Two standard normal numbers.
@@ -161,7 +167,7 @@ fn answers(gpu: &Gpu, lobes: &BakedLobes, rng: &mut impl Rng, count: usize) -> V
     }
     println!("{count} queries of {drawn} are of no more than {MOST_LOBES} lobes");
     let source = glint_shaders::compose(&["query_lobes", modules(params)[0]]);
-    let found: Vec<f32> = answer(gpu, "lobes", &source, &[&upload(gpu, lobes)], &queries).unwrap();
+    let found: Vec<f32> = answer(gpu, "lobes", &source, &[&bound(gpu, lobes)], &queries).unwrap();
     let unit = |i: usize| unit(params.normal_extent, queries[i].place.roughness);
     found.iter().zip(&expected).enumerate().map(|(i, (a, e))| (a * unit(i), e * unit(i))).collect()
 }
@@ -234,7 +240,7 @@ fn hard_maps_and_footprints_have_finite_densities() {
                 }
             }
             let source = glint_shaders::compose(&["query_lobes", modules(&lobes.params)[0]]);
-            let found: Vec<f32> = answer(gpu, "lobes", &source, &[&upload(gpu, &lobes)], &queries).unwrap();
+            let found: Vec<f32> = answer(gpu, "lobes", &source, &[&bound(gpu, &lobes)], &queries).unwrap();
             for (density, query) in found.iter().zip(&queries) {
                 assert!(density.is_finite() && *density >= 0.0, "{density} at {query:?}");
                 assert!(query.place.s.length() <= 1.0 || *density == 0.0, "{density} outside the disk");

@@ -7,12 +7,13 @@ use glint_bake_core::lobes::LobesOptions;
 use glint_bake_core::lobes::options::NormalsChoice;
 use glint_bake_core::lobes::query::QuerySettings;
 use glint_bake_core::progress::Silent;
+use glint_bake_core::surface::sections::to_sections;
 use glint_bake_core::surface::{Surface, SurfaceSettings, bake};
 use glint_bake_core::synthesis::{SynthesisOptions, Target};
-use glint_formats::Wrap;
-use glint_formats::lobes::{Filter, LobeStorage};
-use glint_view::gpu::{Gpu, answer};
-use glint_view::methods::lobes::{surface_modules, upload_surface};
+use glint_formats::lobes::{BINDINGS, Filter, LobeStorage};
+use glint_formats::{Codec, Wrap};
+use glint_view::gpu::{Gpu, answer, bind_sections};
+use glint_view::methods::lobes::surface_modules;
 use rand::{Rng, RngExt};
 
 /// `SurfaceQuery` of query_surface.wgsl.
@@ -75,9 +76,11 @@ fn answers(gpu: &Gpu, surface: &Surface, rng: &mut impl Rng, whole_blocks: bool,
     }
     println!("{count} queries of {drawn} are of no more than {MOST_LOBES} lobes");
     let mut modules = vec!["query_surface"];
-    modules.extend(surface_modules(surface, whole_blocks));
+    modules.extend(surface_modules(&surface.lobes.params, &surface.synthesis.params, whole_blocks));
     let source = glint_shaders::compose(&modules);
-    let found: Vec<f32> = answer(gpu, "surface", &source, &[&upload_surface(gpu, surface)], &queries).unwrap();
+    let sections = to_sections("", surface, Codec::None);
+    let data = bind_sections(gpu, &sections, BINDINGS, surface.lobes.params.wrap).unwrap();
+    let found: Vec<f32> = answer(gpu, "surface", &source, &[&data], &queries).unwrap();
     let unit = |i: usize| unit(surface.lobes.params.normal_extent, queries[i].place.roughness);
     found.iter().zip(&expected).enumerate().map(|(i, (a, e))| (a * unit(i), e * unit(i))).collect()
 }

@@ -6,8 +6,7 @@ use glint_bake_core::dictionary::{self, DictionaryOptions, quality};
 use glint_bake_core::environment::image::{EnvironmentImage, direction as direction_at};
 use glint_bake_core::environment::{self, EnvironmentOptions};
 use glint_bake_core::lobes::{self, LobesOptions};
-use glint_bake_core::ndf_maps::options::NdfMapsOptions;
-use glint_bake_core::ndf_maps::options::{PlacementOptions, StochasticOptions};
+use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, StochasticOptions};
 use glint_bake_core::ndf_maps::placement::place;
 use glint_bake_core::ndf_maps::{self, baked};
 use glint_bake_core::normal_map::NormalMap;
@@ -89,9 +88,9 @@ fn environment_pack() -> Pack {
             pixels.push(if is_lamp { [20.0, 16.0, 8.0] } else { [0.3 + 0.2 * d.y as f32, 0.3, 0.4] });
         }
     }
-    let image = EnvironmentImage::new(2 * HEIGHT, HEIGHT, pixels).unwrap().0;
+    let image = EnvironmentImage::new(2 * HEIGHT, HEIGHT, pixels).unwrap();
     let options = EnvironmentOptions { face_size: 32, measured_texels: 0, ..EnvironmentOptions::default() };
-    let baked = environment::bake(&image, 0, &options, &Silent).unwrap();
+    let baked = environment::bake(&image, &options, &Silent).unwrap();
     pack(environment::sections::to_sections("lamps", &baked, Codec::None))
 }
 
