@@ -158,7 +158,7 @@ fn nothing(gpu: &Gpu) -> Rc<Resources> {
 }
 
 /// A tiny example repeats some times over the surface.
-fn ndf_material(baked: &ndf_maps::eval::Material) -> Material {
+fn ndf_material(baked: &ndf_maps::baked::Material) -> Material {
     const EXAMPLES: f32 = 16.0;
     let params = &baked.maps.params;
     Material {

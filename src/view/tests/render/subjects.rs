@@ -6,9 +6,9 @@ use glint_bake_core::dictionary::{self, DictionaryOptions, quality};
 use glint_bake_core::environment::image::{EnvironmentImage, direction as direction_at};
 use glint_bake_core::environment::{self, EnvironmentOptions};
 use glint_bake_core::lobes::{self, LobesOptions};
-use glint_bake_core::ndf_maps::bake::NdfMapsOptions;
-use glint_bake_core::ndf_maps::placement::{self, PlacementOptions, StochasticOptions};
-use glint_bake_core::ndf_maps::{self, eval};
+use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, StochasticOptions};
+use glint_bake_core::ndf_maps::placement::place;
+use glint_bake_core::ndf_maps::{self, baked};
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::surface;
@@ -53,9 +53,9 @@ fn ndf_maps_pack() -> Pack {
     let stochastic = StochasticOptions { palette: 8, cells: 8, ..StochasticOptions::default() };
     let placements = [PlacementOptions::Tiled(Default::default()), PlacementOptions::Stochastic(stochastic)];
     let sections = ["tiled", "stochastic"].into_iter().zip(placements).flat_map(|(name, placement)| {
-        let placement = placement::bake(&map, options.roughness, &placement).unwrap();
-        let maps = ndf_maps::bake::bake(&map, &options, &Silent).unwrap();
-        ndf_maps::sections::to_sections(name, &eval::Material { maps, placement }, Codec::None)
+        let placement = place(&map, options.roughness, &placement).unwrap();
+        let maps = ndf_maps::bake::bake_maps(&map, &options, &Silent).unwrap();
+        ndf_maps::sections::to_sections(name, &baked::Material { maps, placement }, Codec::None)
     });
     pack(sections.collect())
 }
