@@ -93,3 +93,16 @@ impl From<BakeError> for Failure {
         Failure::new(exit_of(&error), message_of(&error))
     }
 }
+
+#[cfg(feature = "view")]
+impl From<glint_view::gpu::GpuError> for Failure {
+    fn from(error: glint_view::gpu::GpuError) -> Failure {
+        use glint_view::gpu::GpuError;
+        let exit = match error {
+            GpuError::NoAdapter { .. } | GpuError::NoDevice { .. } => Exit::Unsupported,
+            GpuError::Failed(_) => Exit::Unexpected,
+            GpuError::BadPack(_) => Exit::BadInput,
+        };
+        Failure::new(exit, error.to_string())
+    }
+}

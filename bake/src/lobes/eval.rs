@@ -270,35 +270,3 @@ impl SeenLobe {
         if q > CUT { 0.0 } else { self.share * self.peak * libm::expf(-0.5 * q) }
     }
 }
-
-/// Signs of a lobe's quarters along the columns of its factor.
-pub(crate) const QUARTERS: [Vec2; 4] =
-    [Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0), Vec2::new(-1.0, 1.0), Vec2::new(1.0, 1.0)];
-
-/// From a lobe's mean to that of a quarter. Four quarters have the lobe's moments, as the quarters of a box have.
-pub(crate) fn quarter_offset(lobe: &Lobe, signs: Vec2) -> Vec2 {
-    const APART: f32 = 0.866_025_4; // √3 / 2
-    lobe.factor * (signs * APART)
-}
-
-/// The part of a lobe that is made of some of its quarters: weight, mean and standard deviations along both columns are theirs.
-pub(crate) fn part_of(lobe: &Lobe, quarters: [bool; 4]) -> Lobe {
-    let (mut count, mut signs) = (0.0, Vec2::ZERO);
-    for k in 0..4 {
-        if quarters[k] {
-            count += 1.0;
-            signs += QUARTERS[k];
-        }
-    }
-    let mean = if count > 0.0 { signs / count } else { Vec2::ZERO };
-    let d = quarter_offset(lobe, mean);
-    // A quarter of the variance lies within quarters, the rest between their means.
-    let narrow = |m: f32| (1.0 - 0.75 * m * m).sqrt();
-    Lobe {
-        weight: 0.25 * count * lobe.weight,
-        position: lobe.position + d,
-        normal: lobe.normal + lobe.jacobian * d,
-        factor: Mat2::from_cols(lobe.factor.x_axis * narrow(mean.x), lobe.factor.y_axis * narrow(mean.y)),
-        ..*lobe
-    }
-}

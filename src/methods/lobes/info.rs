@@ -4,7 +4,7 @@ use crate::methods::contents::Item;
 use crate::quantities::{kib, percent};
 use glint_bake_core::lobes::{BakedLobes, sections};
 use glint_bake_core::surface::sections as surface_sections;
-use glint_bake_core::synthesis::measure::whole_share;
+use glint_bake_core::synthesis::quality::whole_share;
 use glint_formats::Pack;
 use glint_formats::Wrap;
 use glint_formats::lobes::{Filter, FootprintError, LobeStorage, Merge, NormalsStorage};
