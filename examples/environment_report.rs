@@ -7,12 +7,12 @@
 use glint_bake::input::environment::load_environment;
 use glint_bake_core::environment::cube::{face_of, texel_direction};
 use glint_bake_core::environment::image::luminance;
-use glint_bake_core::environment::levels::{ROUGHNESSES, Seen, even_directions, log_uniform, optimal};
+use glint_bake_core::environment::levels::{ROUGHNESSES, RadianceHistogram, even_directions, log_uniform, optimal};
 use glint_bake_core::environment::quality::{Compared, compare, error_of};
 use glint_bake_core::environment::reference::second_moments;
 use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, LevelCount, bake};
 use glint_bake_core::progress::Silent;
-use glint_formats::environment::{Kernel, Storage};
+use glint_formats::environment::Kernel;
 use rayon::prelude::*;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -75,9 +75,9 @@ texel). Asked are 0.02\n(25 %) where α is below 0.04, 0.005 (5 %) elsewhere.\n\
 const FILTER_HEAD: &str = "\n## Filter\n\nFaces of 256, 9 mips, `--kernel ggx-nl`, cmgen with `--ibl-min-lod-size=1`. \
 RMSE and worst texel over mips with\nα ≥ 0.04, largest.\n\n\
 | image | setting | CPU s | RMSE | worst texel | energy |\n| --- | --- | ---: | ---: | ---: | ---: |\n";
-const MIP_HEAD: &str = "\n## Mips\n\n`--max-error 0.005`, each mip: RMSE (worst texel), stored as f32 and as f16, and cmgen's at 1024 samples. \
-What\nf16 adds is rounding. Mip 0 is compared with means over texels that are exact along 512 lines of each.\n\n\
-| image | storage | 0: α 0 | 1: .004 | 2: .018 | 3: .044 | 4: .086 | 5: .15 | 6: .25 | 7: .42 | 8: 1 |\n\
+const MIP_HEAD: &str = "\n## Mips\n\n`--max-error 0.005`, each mip: RMSE (worst texel), ours and cmgen's at 1024 samples. \
+Mip 0 is compared with means over texels that are exact along 512 lines of each.\n\n\
+| image | filter | 0: α 0 | 1: .004 | 2: .018 | 3: .044 | 4: .086 | 5: .15 | 6: .25 | 7: .42 | 8: 1 |\n\
 | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
 const MOMENT_HEAD: &str = "\n## Second moment of what a facet reflects\n\nMean of |⟨L²⟩ with levels / ⟨L²⟩ − 1| over 48 directions and 5 \
 roughnesses (0.05 to 0.8), `--kernel ndf`, exact filter.\nThe paper's levels have the best of the floors 0.01 to 1e-5 for \
@@ -93,12 +93,11 @@ fn cpu_seconds(children: bool) -> f64 {
     (fields.get(at).unwrap_or(&0.0) + fields.get(at + 1).unwrap_or(&0.0)) / 100.0
 }
 
-fn options(levels: u32, storage: Storage, max_error: f64) -> EnvironmentOptions {
+fn options(levels: u32, max_error: f64) -> EnvironmentOptions {
     EnvironmentOptions {
         min_face_size: 1,
         levels: LevelCount::Exactly(levels),
         kernel: Kernel::GgxNl,
-        storage,
         max_error,
         measured_texels: 0,
         ..EnvironmentOptions::default()
@@ -130,13 +129,13 @@ fn filter_rows(
     mips: &mut String,
     points: &mut Vec<Point>,
 ) {
-    let baked = |levels, storage, max_error| {
+    let baked = |levels, max_error| {
         let begin = cpu_seconds(false);
-        let environment = bake(image, &options(levels, storage, max_error), &Silent).unwrap_or_else(|e| panic!("{e}"));
+        let environment = bake(image, &options(levels, max_error), &Silent).unwrap_or_else(|e| panic!("{e}"));
         (environment, cpu_seconds(false) - begin)
     };
-    let (exact, _) = baked(1, Storage::F32, 0.005);
-    let compared: Vec<Vec<Compared>> = (0..9).map(|mip| compare(image, &exact, mip, TEXELS)).collect();
+    let (chosen, _) = baked(1, 0.005);
+    let compared: Vec<Vec<Compared>> = (0..9).map(|mip| compare(image, &chosen, mip, TEXELS)).collect();
     let mean = luminance(image.mean());
     let cells = |read: &dyn Fn(u32, &Compared) -> [f32; 4]| -> Vec<(f64, f64)> {
         let of_mip = |(mip, all): (usize, &Vec<Compared>)| {
@@ -163,14 +162,13 @@ fn filter_rows(
             cells.iter().map(|(rmse, worst)| format!("{rmse:.4} ({:.1} %)", worst * 100.0)).collect();
         let _ = writeln!(mips, "| {name} | {setting} | {} |", cells.join(" | "));
     };
-    mip_row("f32", &of(&exact));
     for max_error in [0.001, 0.005, 0.02] {
-        let (environment, cpu) = baked(1, Storage::F16, max_error);
+        let (environment, cpu) = baked(1, max_error);
         let cells = of(&environment);
         row(&format!("{max_error}"), true, cpu, &cells, environment.params.measured.energy);
         if max_error == 0.005 {
-            mip_row("f16", &cells);
-            let (with_levels, cpu) = baked(4, Storage::F16, max_error);
+            mip_row("ours", &cells);
+            let (with_levels, cpu) = baked(4, max_error);
             row(&format!("{max_error}, K = 4"), true, cpu, &of(&with_levels), with_levels.params.measured.energy);
         }
     }
@@ -239,8 +237,8 @@ fn cmgen(path: &Path, samples: u32) -> Option<(f64, Vec<Faces>)> {
 }
 
 fn moment_rows(name: &str, image: &EnvironmentImage, rows: &mut String) {
-    let seen = Seen::new(image, Kernel::Ndf);
-    let ours: Vec<Vec<f64>> = COUNTS.iter().map(|count| optimal(&seen, *count).0).collect();
+    let histogram = RadianceHistogram::new(image, Kernel::Ndf);
+    let ours: Vec<Vec<f64>> = COUNTS.iter().map(|count| optimal(&histogram, *count).0).collect();
     let mut all = ours;
     for count in COUNTS {
         all.extend(FLOORS.map(|floor| log_uniform(image, count, floor)));
