@@ -114,6 +114,7 @@ issue_codes! {
     SynthesisOffset = 3062, "synthesis patch outside sample";
     SynthesisSeam = 3063, "synthesis seam path broken";
     SurfaceMismatch = 3064, "lobes and synthesis of a surface do not fit";
+    SynthesisPadding = 3065, "synthesis buffer does not end with zeros";
 }
 
 impl fmt::Display for IssueCode {

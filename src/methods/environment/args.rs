@@ -32,9 +32,13 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value = "256", allow_negative_numbers = true, help_heading = "Bake")]
     pub face_size: u32,
     /// Edge of a face of the last mip, which has roughness 1 [default: 8, or --face-size if smaller]
+    ///
+    /// A larger one interpolates wide lobes better and leaves fewer mips for the others.
     #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Bake")]
     pub min_face_size: Option<u32>,
     /// Radiance levels, 1 to 16, or auto: the fewest that meet --max-moment-error
+    ///
+    /// With 1, lit facets reflect the mean.
     #[arg(long, value_name = "K", default_value = "4", value_parser = level_count, help_heading = "Bake")]
     pub levels: u32,
     /// How levels are chosen: optimal, or log-uniform as in the paper
@@ -53,9 +57,13 @@ pub struct Args {
     #[arg(long, value_name = "E", default_value = "0.1", value_parser = values::positive, allow_negative_numbers = true, help_heading = "Bake")]
     pub max_moment_error: f64,
     /// Give each level a colour of its own, so that red and blue lamps make red and blue glints
+    ///
+    /// Takes 4 bytes a level and texel more.
     #[arg(long, help_heading = "Bake")]
     pub coloured: bool,
     /// Root mean square error of a mip over its mean, 0.0001 to 0.2; four times that below roughness 0.04
+    ///
+    /// When the measured texels miss it, nothing is written and the exit code is 6.
     #[arg(long, value_name = "E", default_value = "0.005", allow_negative_numbers = true, help_heading = "Bake")]
     pub max_error: f64,
     /// Filter: ndf (the paper's, D times masking) or ggx-nl (D times cosine)

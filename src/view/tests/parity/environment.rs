@@ -18,8 +18,11 @@ use glint_bake_core::environment::sections::to_sections;
 use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, bake};
 use glint_bake_core::progress::Silent;
 use glint_formats::binding::{Binding, View};
-use glint_formats::environment::{ALBEDO, BINDINGS, COLOURS, INDICATORS, MAX_LEVELS, RADIANCE, UNIFORM};
+use glint_formats::environment::{
+    ALBEDO, BINDINGS, COLOURS, EnvironmentUniform, INDICATORS, MAX_LEVELS, RADIANCE, UNIFORM,
+};
 use glint_formats::{Codec, Wrap};
+use glint_shaders::assert_layout;
 use glint_view::gpu::{Gpu, ResourceSet, answer, bind_sections};
 use glint_view::methods::environment::empty;
 use rand::{Rng, RngExt};
@@ -294,6 +297,15 @@ fn a_sampler_reads_what_is_read_texel_by_texel() {
         queries.len()
     );
     assert!(mean < 2e-3 && worst < 0.05 && shares < 0.02, "{mean} {worst} {shares}");
+}
+
+#[test]
+fn the_uniform_lies_as_the_shader_reads_it() {
+    assert_layout!(
+        ["query_environment", "bind_environment"],
+        "GlintEnvironment",
+        EnvironmentUniform: level, present, levels, mips, coloured, radiance_scale
+    );
 }
 
 /// White furnace: the mean of glints over 1024 seeds is the smooth reflection.
