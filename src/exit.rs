@@ -63,7 +63,7 @@ impl Failure {
 
     /// A bake of `path` that cannot be done.
     pub fn bake(path: &Path, error: &BakeError) -> Failure {
-        Failure::new(exit_of(error), format!("{}: {error}", path.display()))
+        Failure::new(exit_of(error), format!("{}: {}", path.display(), by_flags(error)))
     }
 }
 
@@ -78,7 +78,22 @@ fn exit_of(error: &BakeError) -> Exit {
 impl From<BakeError> for Failure {
     /// A bake that has no input to name.
     fn from(error: BakeError) -> Failure {
-        Failure::new(exit_of(&error), error.to_string())
+        Failure::new(exit_of(&error), by_flags(&error))
+    }
+}
+
+/// What an error says, with flags in place of the options that its message begins with: a bake names its options, as in
+/// `alpha_dict: expected …`, and the flag of an option is called as it is.
+fn by_flags(error: &BakeError) -> String {
+    let text = error.to_string();
+    let is_name = |word: &str| !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'_');
+    match text.split_once(": ") {
+        Some((options, rest)) if !matches!(error, BakeError::BadInput(_)) && options.split(", ").all(is_name) => {
+            let flags: Vec<String> =
+                options.split(", ").map(|option| format!("--{}", option.replace('_', "-"))).collect();
+            format!("{}: {rest}", flags.join(", "))
+        }
+        _ => text,
     }
 }
 

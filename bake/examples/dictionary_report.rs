@@ -6,14 +6,15 @@
 
 use glam::{DVec2, Vec2, Vec3};
 use glint_bake_core::brdf::{masking, normal_to_slope, sdf_to_ndf};
+use glint_bake_core::dictionary::baked::{Dictionary, Tables};
 use glint_bake_core::dictionary::eval::{
-    GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_sdf, patch_sdf, slope_query,
+    DictionaryMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_sdf, patch_sdf, slope_query,
 };
 use glint_bake_core::dictionary::quality::{LevelQuality, domain_floor, measure_level};
 use glint_bake_core::dictionary::reference::smooth_density;
-use glint_bake_core::dictionary::tables::{Dictionary, Tables};
 use glint_bake_core::dictionary::{DictionaryOptions, bake};
 use glint_bake_core::hash::cell_state;
+use glint_bake_core::progress::Silent;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::PI;
@@ -25,8 +26,8 @@ fn main() {
     let options = DictionaryOptions::default();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
         ["--bake-only", file] => {
-            let dictionary = bake(&options).expect("the default dictionary");
-            std::fs::write(file, dictionary.payload()).expect("writing the payload");
+            let dictionary = bake(&options, &Silent).expect("the default dictionary");
+            std::fs::write(file, bytemuck::cast_slice::<u32, u8>(&dictionary.pairs())).expect("writing the payload");
         }
         [] => report(&options, None, None),
         ["--svg", svg] => report(&options, Some(svg), None),
@@ -36,7 +37,7 @@ fn main() {
 }
 
 fn report(options: &DictionaryOptions, svg: Option<&str>, readme: Option<&str>) {
-    let dictionary = bake(options).expect("the default dictionary");
+    let dictionary = bake(options, &Silent).expect("the default dictionary");
     let mut levels = Vec::new();
     for level in 0..options.levels {
         levels.push(measure_level(&dictionary, level));
@@ -71,10 +72,10 @@ fn replace_headline(file: &str, headline: &str) {
 /// Least time of eight bakes, in seconds. The bake has one thread, so on a quiet machine this is its processor time.
 fn bake_seconds(options: &DictionaryOptions) -> (Dictionary, f64) {
     let mut least = f64::MAX;
-    let mut dictionary = bake(options).expect("a dictionary of the sweep");
+    let mut dictionary = bake(options, &Silent).expect("a dictionary of the sweep");
     for _ in 0..8 {
         let start = Instant::now();
-        dictionary = bake(options).expect("a dictionary of the sweep");
+        dictionary = bake(options, &Silent).expect("a dictionary of the sweep");
         least = least.min(start.elapsed().as_secs_f64());
     }
     (dictionary, least)
@@ -91,7 +92,7 @@ fn headline(options: &DictionaryOptions, levels: &[LevelQuality]) -> String {
         options.marginals,
         options.levels,
         options.entries,
-        dictionary.payload().len() as f64 / 1024.0,
+        (4 * dictionary.pairs().len()) as f64 / 1024.0,
         seconds,
         levels[0].l1_of_mean,
         last.ks_mean,
@@ -151,7 +152,7 @@ fn sweep(default: &DictionaryOptions) {
     for options in settings {
         let (dictionary, seconds) = bake_seconds(&options);
         let tables = dictionary.tables();
-        let bytes = dictionary.payload().len();
+        let bytes = 4 * dictionary.pairs().len();
         let mut worst: f64 = 1.0;
         let mut normalisation: f64 = 0.0;
         for level in 0..options.levels {
@@ -184,10 +185,10 @@ fn sweep(default: &DictionaryOptions) {
     }
 }
 
-fn material(target: u32, alpha: f32, density: f32, max_anisotropy: f32) -> GlintMaterial {
-    GlintMaterial {
+fn material(target: u32, alpha: f32, density: f32, max_anisotropy: f32) -> DictionaryMaterial {
+    DictionaryMaterial {
         alpha: Vec2::splat(alpha),
-        target,
+        normal_target: target,
         density,
         relative_area: 1.0,
         density_randomisation: 0.01,
@@ -220,7 +221,7 @@ fn one_cell_l1(tables: &Tables, target: u32) -> f64 {
                         level,
                         &slope_query(tables, &m, slope.as_vec2()),
                     )
-                    .0
+                    .sdf
                     .x,
                 );
                 sum += (value / smooth_density(ggx, DVec2::splat(0.5), slope) - 1.0).abs();
@@ -312,14 +313,14 @@ fn furnaces(tables: &Tables) {
 }
 
 /// ∫ G₁(o, h) D(h) (o·h) / (o·n) dω_h at θ = 0, π/4 and 1.56.
-fn furnace(tables: &Tables, m: &GlintMaterial, pixel: PixelOnSurface) -> [f64; 3] {
+fn furnace(tables: &Tables, m: &DictionaryMaterial, pixel: PixelOnSurface) -> [f64; 3] {
     let n = 384;
     let ring = 4.0 / n as f64;
     let alpha = f64::from(m.alpha.x);
     let mut sums = [0.0; 3];
     for a in 0..n {
         let t = (a as f64 + 0.5) * ring;
-        let ggx = m.target == TARGET_GGX;
+        let ggx = m.normal_target == TARGET_GGX;
         let r = if ggx { libm::expm1(t * t).sqrt() } else { t };
         let r_dr = if ggx { t * libm::exp(t * t) } else { t } * ring;
         for b in 0..2 * n {

@@ -84,9 +84,11 @@ issue_codes! {
     LayerName = 3018, "layer names a missing material";
     LayerValue = 3019, "layer reflectance out of range";
     DictionaryParameters = 3020, "dictionary parameter out of range";
-    DictionaryShape = 3021, "dictionary table differs from parameters";
+    DictionaryShape = 3021, "dictionary buffer differs from parameters";
     DictionaryValue = 3022, "dictionary value out of range";
     DictionaryRow = 3023, "dictionary row not normalised";
+    DictionaryUniform = 3024, "dictionary uniforms differ from parameters";
+    DictionaryPair = 3025, "dictionary pair differs from its row";
     EnvironmentParameters = 3030, "environment parameter out of range";
     EnvironmentLevels = 3031, "environment levels do not rise from 0";
     EnvironmentShape = 3032, "environment texture differs from parameters";

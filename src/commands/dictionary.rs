@@ -6,6 +6,7 @@ use crate::exit::Failure;
 use crate::info::DictionaryInfo;
 use crate::pack;
 use glint_bake_core::dictionary::{self, DictionaryOptions, quality, sections};
+use glint_bake_core::progress::Silent;
 use glint_formats::Codec;
 use glint_formats::provenance::Provenance;
 use std::path::PathBuf;
@@ -64,7 +65,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     options.validate()?;
     let delivery = Delivery { output: &args.output, inputs: &[], run: &args.run };
     delivery.check()?;
-    delivery.check_size(2 * options.tables() * u64::from(options.entries), SMALLER)?;
+    delivery.check_size(4 * options.tables() * u64::from(options.entries), SMALLER)?;
     if args.run.dry_run {
         terminal.say(&format!(
             "would write {}: {}; dry run, nothing was written",
@@ -73,7 +74,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         ));
         return Ok(());
     }
-    let dictionary = dictionary::bake(&options)?;
+    let dictionary = dictionary::bake(&options, &Silent)?;
     let codec = if args.compress { Codec::Zstd } else { Codec::None };
     let sections = sections::to_sections(NAME, &dictionary, quality::measure(&dictionary), codec);
     drop(dictionary);

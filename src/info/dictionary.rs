@@ -53,9 +53,9 @@ impl DictionaryInfo {
         entries.filter_map(describe).collect()
     }
 
-    /// Size on one line.
+    /// Size on one line, that of the table as a GPU holds it.
     pub fn size_line(marginals: u32, levels: u32, entries: u32) -> String {
-        let bytes = 2 * u64::from(marginals) * u64::from(levels) * u64::from(entries);
+        let bytes = 4 * u64::from(marginals) * u64::from(levels) * u64::from(entries);
         format!("{marginals} marginals × {levels} levels × {entries} entries, {}", kib(bytes))
     }
 
@@ -78,7 +78,7 @@ impl DictionaryInfo {
         let size = DictionaryInfo::size_line(self.marginals, self.levels, self.entries);
         let _ = writeln!(out, "  tables       {size}");
         let lobes = 1u64 << self.levels.min(63);
-        let _ = writeln!(out, "  lobes        2 to {lobes} a marginal, deviation {} in slope", self.lobe_std);
+        let _ = writeln!(out, "  lobes        2 to {lobes} a marginal, standard deviation {} in slope", self.lobe_std);
         let _ = writeln!(out, "  target       α {}, tables end at slope {:.4}", self.alpha_dict, self.domain);
         let _ = writeln!(out, "  integral     {:.1e} at most from 1", self.measured.normalisation);
         let _ = writeln!(out, "  level 0      L1 of the mean to the target {:.4}", self.measured.mean_l1_first_level);

@@ -69,13 +69,13 @@ impl Subjects {
 
     fn add_dictionaries(&mut self, gpu: &Gpu, pack: &Pack, colours: &[Vec3]) -> Result<(), GpuError> {
         for name in dictionary::sections::dictionaries(pack) {
-            let (tables, params) = dictionary::sections::from_pack(pack, name).map_err(bad)?;
+            let params = dictionary::sections::params(pack, name).map_err(bad)?;
             let mut material = Material { alpha: [params.alpha_dict as f32; 2], ..Material::default() };
             if !colours.is_empty() {
                 material.colours = colours.len() as u32;
                 material.mean_colour = (colours.iter().sum::<Vec3>() / colours.len() as f32).to_array();
             }
-            let data = Rc::new(methods::dictionary::upload(gpu, &tables, colours));
+            let data = Rc::new(methods::dictionary::upload(gpu, pack, name, colours)?);
             self.add(Method::Dictionary, name, &data, material);
         }
         Ok(())

@@ -149,7 +149,8 @@ fn names_of_twins_are_found() {
     assert_eq!(of("glint_lod", "ndf_maps/query.wgsl").as_deref(), Some("lod"));
     assert_eq!(of("glint_lobes_cell", "ndf_maps/query.wgsl"), None);
     assert_eq!(of("lod", "ndf_maps/query.wgsl"), None);
-    let found: BTreeMap<usize, String> = wgsl_functions("fn a(x: f32) {\n}\n  fn b\nfn c(").into_iter().enumerate().collect();
+    let found: BTreeMap<usize, String> =
+        wgsl_functions("fn a(x: f32) {\n}\n  fn b\nfn c(").into_iter().enumerate().collect();
     assert_eq!(found.into_values().collect::<Vec<_>>(), ["a", "c"]);
     assert_eq!(rust_functions("fn a() {} impl X { fn b(&self) {} } #[cfg(test)] mod tests { fn c() {} }"), ["a", "b"]);
 }

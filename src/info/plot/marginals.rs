@@ -1,8 +1,8 @@
 //! The marginals of a dictionary as an SVG: one panel a level, some marginals, the mean of all, and the target.
 
 use super::escape;
+use glint_bake_core::dictionary::baked::Dictionary;
 use glint_bake_core::dictionary::quality::{mean_table, target_density};
-use glint_bake_core::dictionary::tables::Dictionary;
 use std::fmt::Write;
 
 const COLUMNS: u32 = 4;

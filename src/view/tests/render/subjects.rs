@@ -32,7 +32,7 @@ fn pack(sections: Vec<Section>) -> Pack {
 
 fn dictionary_pack() -> Pack {
     let options = DictionaryOptions::default();
-    let baked = dictionary::bake(&options).unwrap();
+    let baked = dictionary::bake(&options, &Silent).unwrap();
     pack(dictionary::sections::to_sections("glitter", &baked, quality::measure(&baked), Codec::None))
 }
 
