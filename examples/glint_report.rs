@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use glint_bake::input::environment::load_environment;
-use glint_bake_core::counting::normal::unit_from_bits;
+use glint_bake_core::counting::eval::unit_from_bits;
 use glint_bake_core::environment::glints::{
     GlintChances, GlintSurface, environment_glints, glint_chances, glint_relative_variance,
 };

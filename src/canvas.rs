@@ -1,4 +1,4 @@
-//! A picture in memory and its PNG.
+//! A picture in memory and its PNG, and the colours that values and directions have in pictures.
 
 use image::{ExtendedColorType, ImageEncoder, codecs::png};
 
@@ -45,4 +45,32 @@ impl Canvas {
             .expect("a vector takes every byte of a picture of the right size");
         out
     }
+}
+
+/// Black over red and yellow to white.
+pub fn heat(value: f32) -> [u8; 3] {
+    [3.0, 1.6, 0.6].map(|gain| {
+        let start = if gain > 2.0 {
+            0.0
+        } else if gain > 1.0 {
+            0.28
+        } else {
+            0.6
+        };
+        let channel = ((value - start).max(0.0) / (1.0 - start)).powf(1.0 / gain);
+        (255.0 * channel.min(1.0)) as u8
+    })
+}
+
+/// A hue of the wheel, 0 to 1, at middling brightness.
+pub fn colour_wheel(hue: f32) -> [u8; 3] {
+    [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|shift| {
+        let wave = (std::f32::consts::TAU * (hue + shift)).cos();
+        (120.0 + 85.0 * wave) as u8
+    })
+}
+
+/// Text as it stands in an SVG.
+pub fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

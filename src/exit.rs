@@ -1,6 +1,5 @@
 //! Exit codes and the failures that lead to them. Codes are documented in docs/CLI.md and never reused.
 
-use crate::input::InputError;
 use glint_bake_core::error::BakeError;
 use std::path::Path;
 
@@ -94,17 +93,5 @@ fn by_flags(error: &BakeError) -> String {
             format!("{}: {rest}", flags.join(", "))
         }
         _ => text,
-    }
-}
-
-impl From<InputError> for Failure {
-    fn from(error: InputError) -> Failure {
-        let exit = match error {
-            InputError::Io { .. } => Exit::InputOutput,
-            InputError::Bad { .. } => Exit::BadInput,
-            InputError::Unsupported { .. } => Exit::Unsupported,
-            InputError::Limit { .. } => Exit::LimitExceeded,
-        };
-        Failure::new(exit, error.to_string())
     }
 }

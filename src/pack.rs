@@ -1,90 +1,9 @@
-//! From a map to a material, and from sections to the bytes of a pack that was verified. Shared by bakes and demo.
+//! From sections to the bytes of a pack that was verified.
 
 use crate::cli::git_hash;
 use crate::exit::{Exit, Failure};
-use glint_bake_core::error::{BakeError, Result as BakeResult};
-use glint_bake_core::ndf_maps::bake::{self, NdfMapsOptions};
-use glint_bake_core::ndf_maps::eval::Material;
-use glint_bake_core::ndf_maps::placement::{self, PlacementOptions};
-use glint_bake_core::ndf_maps::sections;
-use glint_bake_core::ndf_maps::transform::TransformRanges;
-use glint_bake_core::normal_map::NormalMap;
-use glint_bake_core::progress::Progress;
-use glint_formats::ndf_maps::{DensityStorage, LAYERS, LayeredMaterial};
 use glint_formats::provenance::{PROVENANCE, Provenance};
-use glint_formats::{Codec, Limits, PackBuilder, Section, Severity, validate};
-
-/// Bytes of one tile in the paper's layout: 128 × 128 floats.
-pub const PAPER_TILE_BYTES: u64 = 128 * 128 * 4;
-
-/// A material with its name.
-pub struct Baked {
-    /// Name in the pack.
-    pub name: String,
-    /// What was baked.
-    pub material: Material,
-}
-
-/// Bakes one material.
-pub fn bake(
-    map: &NormalMap,
-    options: &NdfMapsOptions,
-    placement: &PlacementOptions,
-    progress: &dyn Progress,
-) -> BakeResult<Material> {
-    let placement = placement::bake(map, options.roughness, placement)?;
-    let maps = bake::bake(map, options, progress)?;
-    Ok(Material { maps, placement })
-}
-
-/// What would stop [`bake`], found without the work.
-pub fn check(
-    map: &NormalMap,
-    options: &NdfMapsOptions,
-    placement: &PlacementOptions,
-    max_memory: u64,
-) -> BakeResult<()> {
-    if u64::from(map.width) * u64::from(map.height) > bake::MAX_EXAMPLE_TEXELS {
-        return Err(BakeError::LimitExceeded(format!(
-            "expected at most {} texels, found {} × {}; NDF maps are for small examples: use a part of it with --crop WxH+X+Y",
-            bake::MAX_EXAMPLE_TEXELS,
-            map.width,
-            map.height
-        )));
-    }
-    let needed = tile_count(map.width, map.height, options.min_tile) * PAPER_TILE_BYTES;
-    if options.storage == DensityStorage::PaperF32 && needed > max_memory {
-        return Err(BakeError::LimitExceeded(format!(
-            "the paper's layout needs {needed} bytes, the limit is {max_memory}; raise --max-memory or give --storage u8"
-        )));
-    }
-    placement::bake(map, options.roughness, placement).map(|_| ())
-}
-
-/// Tiles of all levels of an example, from tiles of `min_tile` texels on.
-pub fn tile_count(width: u32, height: u32, min_tile: u32) -> u64 {
-    bake::levels_from(width, height, min_tile)
-        .iter()
-        .map(|level| u64::from(level.tiles_x) * u64::from(level.tiles_y))
-        .sum()
-}
-
-/// The bytes of a pack of materials.
-pub fn assemble(
-    materials: &[Baked],
-    layers: Option<&LayeredMaterial>,
-    provenance: &Provenance,
-    codec: Codec,
-) -> Result<Vec<u8>, Failure> {
-    let mut all = Vec::new();
-    for baked in materials {
-        all.extend(sections::to_sections(&baked.name, &baked.material, codec));
-    }
-    if let Some(layers) = layers {
-        all.push(Section::parameters(LAYERS, &format!("{}:{}", layers.coat, layers.base), layers));
-    }
-    seal(provenance, all)
-}
+use glint_formats::{Limits, PackBuilder, Section, Severity, validate};
 
 /// The bytes of a pack. They pass verification, or there is a failure: a bake never ships a pack that does not verify.
 pub fn seal(provenance: &Provenance, sections: Vec<Section>) -> Result<Vec<u8>, Failure> {
@@ -109,41 +28,4 @@ pub fn provenance(method: &str) -> Provenance {
         method: method.to_owned(),
         ..Provenance::default()
     }
-}
-
-/// The flag's value for a storage.
-pub fn storage_name(storage: DensityStorage) -> &'static str {
-    match storage {
-        DensityStorage::SqrtU8 => "u8",
-        DensityStorage::F16 => "f16",
-        DensityStorage::PaperF32 => "paper",
-    }
-}
-
-/// The ranges of a placement.
-pub fn ranges(placement: &PlacementOptions) -> &TransformRanges {
-    match placement {
-        PlacementOptions::Tiled(ranges) => ranges,
-        PlacementOptions::Stochastic(options) => &options.ranges,
-    }
-}
-
-/// Ranges as the flag takes them.
-pub fn transforms_text(ranges: &TransformRanges) -> String {
-    let mut parts = Vec::new();
-    let mut add = |name: &str, (low, high): (f64, f64), neutral: f64| {
-        if low != high {
-            parts.push(format!("{name}={low}..{high}"));
-        } else if low != neutral {
-            parts.push(format!("{name}={low}"));
-        }
-    };
-    add("rotate", ranges.rotate_degrees, 0.0);
-    add("scale", ranges.scale, 1.0);
-    add("stretch", ranges.stretch, 1.0);
-    add("shear", ranges.shear, 0.0);
-    if ranges.mirror {
-        parts.push("mirror".into());
-    }
-    if parts.is_empty() { "none".into() } else { parts.join(",") }
 }

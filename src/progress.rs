@@ -1,16 +1,10 @@
 //! Progress on standard error, for people only: a bar on a terminal, one line a stage elsewhere when it is asked for.
 
-use crate::cli::Terminal;
+use crate::cli::{Terminal, bars};
 use glint_bake_core::progress::Progress;
-use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, stderr};
-use std::sync::{LazyLock, Mutex};
-
-/// Every bar of this process, so that several pieces of work and messages between them share one terminal.
-pub fn bars() -> &'static MultiProgress {
-    static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
-    &BARS
-}
+use std::sync::Mutex;
 
 /// A bar below all others for `total` parts of a larger piece of work; hidden where no bars are wanted.
 pub fn overall(terminal: Terminal, what: &str, total: u64) -> ProgressBar {

@@ -18,6 +18,8 @@ mod damage;
 mod dictionary;
 #[path = "cli/documentation.rs"]
 mod documentation;
+#[path = "cli/documentation_commands.rs"]
+mod documentation_commands;
 #[path = "cli/environment.rs"]
 mod environment;
 #[path = "cli/examples.rs"]
@@ -48,6 +50,8 @@ mod report;
 mod schema;
 #[path = "cli/shaders.rs"]
 mod shaders;
+#[path = "cli/shipped_maps.rs"]
+mod shipped_maps;
 #[path = "cli/support.rs"]
 mod support;
 #[path = "cli/surface.rs"]

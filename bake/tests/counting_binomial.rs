@@ -1,10 +1,10 @@
 //! The binomial draw against the exact distribution: by going through its random word, and by drawing.
 
-use glint_bake_core::counting::binomial::{FEW, whole_count};
-use glint_bake_core::counting::normal::{Uniform, normal_upper_quantile, unit_from_bits};
+use glint_bake_core::counting::eval::{FEW, count_value, unit_from_bits, whole_binomial, whole_count};
+use glint_bake_core::counting::paper::normal_upper_quantile;
 use glint_bake_core::counting::quality::{CountingQuality, SecondWord, compare, outcomes};
 use glint_bake_core::counting::reference::ExactBinomial;
-use glint_bake_core::counting::{Count, binomial, paper, whole_binomial};
+use glint_bake_core::counting::{Count, binomial, paper};
 use glint_bake_core::rng::{ItemRng, Purpose};
 
 const TRIALS: [f32; 24] = [
@@ -179,7 +179,8 @@ fn hits_grow_with_the_chance() {
             let mut before = 0.0;
             for i in 0..=1000 {
                 let p = i as f32 / 1000.0;
-                let hits = whole_binomial(n.into(), p, 1.0 - p, Uniform::from_bits(bits))[0].value();
+                let hits =
+                    count_value(whole_binomial(n.into(), p, 1.0 - p, unit_from_bits(bits), unit_from_bits(!bits))[0]);
                 assert!(hits >= before - 1.0, "N {n} p {p} word {bits:x}: {before} then {hits}");
                 falls += u32::from(hits < before);
                 steps += 1;
@@ -195,11 +196,11 @@ fn hits_grow_with_the_chance() {
 fn certain_and_impossible_hits() {
     for n in [0.0f32, 1.0, 2.0, 12.0, 13.0, 1e4, 1e16] {
         for bits in [0u32, 1, 77, 1 << 31, u32::MAX - 1, u32::MAX] {
-            let u = Uniform::from_bits(bits);
-            assert_eq!(whole_binomial(n.into(), 0.0, 1.0, u), [0.0, n].map(Count::from));
-            assert_eq!(whole_binomial(n.into(), 1.0, 0.0, u), [n, 0.0].map(Count::from));
+            let [u, v] = [bits, !bits].map(unit_from_bits);
+            assert_eq!(whole_binomial(n.into(), 0.0, 1.0, u, v), [0.0, n].map(Count::from));
+            assert_eq!(whole_binomial(n.into(), 1.0, 0.0, u, v), [n, 0.0].map(Count::from));
             for p in [1e-16f32, 1e-3, 0.5, 0.7, 1.0 - f32::EPSILON] {
-                let [hits, misses] = whole_binomial(n.into(), p, 1.0 - p, u).map(Count::value);
+                let [hits, misses] = whole_binomial(n.into(), p, 1.0 - p, u, v).map(count_value);
                 assert!(hits >= 0.0 && hits <= n && misses >= 0.0 && misses <= n, "N {n} p {p} {hits} {misses}");
             }
         }

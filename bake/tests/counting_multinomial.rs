@@ -1,8 +1,6 @@
 //! Multinomial counts: sums, marginals, covariances, exact distribution of few facets, and the degenerate cases.
 
-use glint_bake_core::counting::binomial::whole_count;
-use glint_bake_core::counting::multinomial::tree_leaves;
-use glint_bake_core::counting::normal::unit_from_bits;
+use glint_bake_core::counting::eval::{count_value, tree_leaves, unit_from_bits, whole_count};
 use glint_bake_core::counting::{Count, MAX_LEVELS, multinomial};
 use glint_bake_core::rng::{ItemRng, Purpose};
 
@@ -143,7 +141,7 @@ fn few_facets_follow_the_multinomial_itself() {
     let mut rng = ItemRng::new(23, Purpose::Test(3), 0);
     let mut seen = std::collections::BTreeMap::<[u32; 5], u32>::new();
     for _ in 0..draws {
-        let counts = multinomial(3.0, &all, 5, &words(&mut rng)).map(Count::value);
+        let counts = multinomial(3.0, &all, 5, &words(&mut rng)).map(count_value);
         *seen.entry(std::array::from_fn(|i| counts[i] as u32)).or_default() += 1;
     }
     let (mut chi2, mut cells, mut mass) = (0.0, 0, 0.0);
@@ -196,13 +194,13 @@ fn degenerate_weights() {
             for only in 0..levels {
                 let mut all = [0.0; MAX_LEVELS];
                 all[only] = 1e-30;
-                let counts = multinomial(37.0, &all, levels, &drawn).map(Count::value);
+                let counts = multinomial(37.0, &all, levels, &drawn).map(count_value);
                 assert_eq!(counts[only], 37.0);
                 assert_eq!(counts.iter().sum::<f32>(), 37.0);
             }
-            let black = multinomial(37.0, &[0.0; MAX_LEVELS], levels, &drawn).map(Count::value);
+            let black = multinomial(37.0, &[0.0; MAX_LEVELS], levels, &drawn).map(count_value);
             assert_eq!((black[0], black.iter().sum::<f32>()), (37.0, 37.0));
-            let invalid = multinomial(5.0, &[f32::NAN; MAX_LEVELS], levels, &drawn).map(Count::value);
+            let invalid = multinomial(5.0, &[f32::NAN; MAX_LEVELS], levels, &drawn).map(count_value);
             assert_eq!(invalid.iter().sum::<f32>(), 5.0);
         }
         assert_eq!(multinomial(0.0, &[1.0; MAX_LEVELS], 16, &drawn), [Count::default(); MAX_LEVELS]);

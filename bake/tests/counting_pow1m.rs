@@ -1,8 +1,9 @@
 //! (1 − p)^N, p^N and their complements in f32, with this processor's functions and with the least exact ones of WGSL.
 
-use glint_bake_core::counting::pow1m::{Elementary, Native, halved, halvings, one_minus_pow1m_with, pow1m_with};
-use glint_bake_core::counting::wgsl::LeastExact;
-use glint_bake_core::counting::{one_minus_pow1m, pow1m};
+use glint_bake_core::counting::eval::{halved, halvings};
+use glint_bake_core::counting::pow1m::{
+    Elementary, LeastExact, Native, one_minus_pow1m, one_minus_pow1m_with, pow1m, pow1m_with,
+};
 use libm::{exp, exp10, expm1, log, log1p};
 use std::f64::consts::LN_2;
 

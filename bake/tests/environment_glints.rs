@@ -2,7 +2,7 @@
 //! against explicit facets.
 
 use glam::{DVec3, Vec3};
-use glint_bake_core::counting::normal::unit_from_bits;
+use glint_bake_core::counting::eval::unit_from_bits;
 use glint_bake_core::environment::eval::environment_radiance;
 use glint_bake_core::environment::glints::{GlintSurface, environment_glints, glint_chances, glint_relative_variance};
 use glint_bake_core::environment::image::{direction, luminance};

@@ -78,7 +78,7 @@ fn explain_tables() {
         "*ours*: Runnalls' merging from four seeds a texel, k = 32, cells of 8 texels, 16 bytes a lobe, levels as the evaluator \
          chooses them. *k-means*: the paper's, averaged parameters, from four seeds and from one, read at the same levels as \
          ours. *ratio*: ours over the better of the two. *Eq. 8*: the better of the two again, read at the levels that the paper \
-         chooses, cells of 4 σ (λ = log₂ 4σ, in texels; [METHODS.md](METHODS.md#mip-mapped-lobes) has the other readings), and ours \
+         chooses, cells of 4 σ (λ = log₂ 4σ, in texels; [lobes](methods/lobes.md#levels) has the other readings), and ours \
          over it. *moments*: k-means with moment matching. *level 1* is the finest stored level alone, ours and k-means from \
          four seeds.\n\n\
          At σ ≤ 2 our choice of levels reads the map itself, which nobody clusters, so that *ratio* is 1.00 there whatever the \

@@ -1,12 +1,17 @@
 //! The frame around every program: response files, parsing, interruption, and the exit code.
 
 mod common;
+pub mod normal_maps;
 mod response;
 mod run_flags;
+mod terminal;
+mod threads;
 pub mod values;
 
-pub use common::{Colour, Common, ProgressWhen, Terminal};
+pub use common::{Colour, Common, ProgressWhen};
 pub use run_flags::RunFlags;
+pub use terminal::{Terminal, bars};
+pub use threads::on_threads;
 
 use crate::exit::{Exit, Failure};
 use crate::output;

@@ -1,30 +1,22 @@
 //! One file (or folder) a subcommand: its flags and what it does.
 
-mod area_light;
+pub mod bake;
 mod build;
-mod deliver;
+
 mod demo;
-mod dictionary;
-mod environment;
 mod export;
 mod generate;
 mod info;
-mod lobes;
-mod methods;
-mod ndf_maps;
 mod ninja;
-mod normal_maps;
 mod plan;
 mod preview;
 mod report;
 mod shaders;
-mod surface;
 mod view;
-
-pub use methods::{Draft, Method};
 
 use crate::cli::{Common, LONG_VERSION, Terminal};
 use crate::exit::{Failure, HELP};
+use crate::methods::Method;
 use clap::{CommandFactory, Parser, Subcommand};
 
 /// Lines that `glint-bake --help` shows and a test runs.
@@ -134,14 +126,4 @@ pub fn view(cli: View) -> Result<(), Failure> {
 /// documentation.
 pub fn programs() -> [clap::Command; 3] {
     [Bake::command(), Info::command(), View::command()]
-}
-
-/// Runs `work` on `threads` threads; as many as there are cores when it is not said.
-fn on_threads<T: Send>(threads: Option<u32>, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-    let Some(threads) = threads else { return Ok(work()) };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build();
-    let pool = pool.map_err(|e| {
-        Failure::new(crate::exit::Exit::Unexpected, format!("{threads} threads cannot be started: {e}; give fewer"))
-    })?;
-    Ok(pool.install(work))
 }

@@ -3,8 +3,7 @@
 use crate::cli::Terminal;
 use crate::exit::Failure;
 use crate::output;
-use crate::plan;
-use crate::project::{Project, ninja};
+use crate::project::{Project, ninja, settled};
 use std::path::{Path, PathBuf};
 
 /// Lines that the help shows and a test runs.
@@ -33,7 +32,7 @@ pub struct Args {
 /// Runs the subcommand.
 pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let mut project = Project::load(&args.project)?;
-    plan::settle(&mut project, true, terminal)?;
+    settled::settle(&mut project, true, terminal)?;
     let Some(path) = &args.output else {
         return output::print(&ninja::manifest(&project, &args.program, Path::new("build.ninja")));
     };

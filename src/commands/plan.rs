@@ -2,10 +2,10 @@
 
 use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
-use crate::info::{kib, percent};
 use crate::output;
 use crate::plan;
-use crate::project::Project;
+use crate::project::{Project, settled};
+use crate::quantities::{kib, percent};
 use std::path::PathBuf;
 
 /// Lines that the help shows and a test runs.
@@ -37,9 +37,9 @@ pub struct Args {
 pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let project = Project::load(&args.project)?;
     if args.measure {
-        return super::on_threads(args.threads, || measure(project, terminal))?;
+        return crate::cli::on_threads(args.threads, || measure(project, terminal))?;
     }
-    let plan = super::on_threads(args.threads, || plan::plan(&project, terminal))??;
+    let plan = crate::cli::on_threads(args.threads, || plan::plan(&project, terminal))??;
     if let Some(scene) = &project.scene {
         output::print(&plan.to_text(scene))?;
     }
@@ -52,7 +52,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
 
 /// Says how good the packs are; a failure when one is not good enough.
 fn measure(mut project: Project, terminal: Terminal) -> Result<(), Failure> {
-    plan::settle(&mut project, false, terminal)?;
+    settled::settle(&mut project, false, terminal)?;
     let all = plan::measure(&project)?;
     let mut text = String::new();
     for pack in &all {

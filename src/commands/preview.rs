@@ -81,7 +81,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let look = Look::choose(&report, args)?;
     let scene = look.scene(args);
     let (width, height) = args.size;
-    let canvas = super::on_threads(args.threads, || render(&scene, width, height))?;
+    let canvas = crate::cli::on_threads(args.threads, || render(&scene, width, height))?;
     output::write(&args.output, &canvas.to_png())?;
     terminal.say(&format!("{}: written, {width} × {height}", args.output.display()));
     Ok(())

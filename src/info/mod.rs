@@ -1,26 +1,19 @@
 //! What a pack holds, as data: the one description that text, JSON, reports and summaries are made from.
 
-mod area_light;
-mod dictionary;
 pub mod diff;
-mod environment;
-mod lobes;
-mod material;
 mod parameters;
 pub mod plot;
-mod surface;
 mod text;
 
-pub use area_light::AreaLightInfo;
-pub use dictionary::DictionaryInfo;
-pub use environment::EnvironmentInfo;
-pub use lobes::LobesInfo;
-pub use material::MaterialInfo;
 pub use parameters::ParametersInfo;
-pub use surface::SurfaceInfo;
-pub use text::{kib, percent};
 
 use crate::exit::{Exit, Failure};
+use crate::methods::area_light::info::AreaLightInfo;
+use crate::methods::dictionary::info::DictionaryInfo;
+use crate::methods::environment::info::EnvironmentInfo;
+use crate::methods::lobes::info::LobesInfo;
+use crate::methods::lobes::surface_info::SurfaceInfo;
+use crate::methods::ndf_maps::info::MaterialInfo;
 use glint_bake_core::ndf_maps::sections;
 use glint_formats::ndf_maps::{LAYERS, LayeredMaterial};
 use glint_formats::provenance::{PROVENANCE, Provenance};

@@ -6,7 +6,8 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use super::{InputError, InputOptions};
+use super::error::InputError;
+use super::options::InputOptions;
 
 /// cICP's code for the sRGB transfer function.
 const CICP_TRANSFER_SRGB: u8 = 13;

@@ -2,7 +2,10 @@
 //!
 //! Values are taken as they are: an exposure that a Radiance header names is not undone, as in most programs, and noted.
 
-use super::{InputError, InputOptions, check_size, exr_file, from_bake, read};
+use super::error::InputError;
+use super::exr_file;
+use super::limits::{check_size, from_bake, read};
+use super::options::InputOptions;
 use glint_bake_core::environment::EnvironmentImage;
 use glint_formats::provenance::InputDigest;
 use image::codecs::hdr::HdrDecoder;

@@ -1,7 +1,7 @@
 //! Why an input file cannot be used; one kind for each exit code.
 
+use crate::exit::{Exit, Failure};
 use std::path::{Path, PathBuf};
-
 use thiserror::Error;
 
 /// Why a file cannot be loaded. The message names the file, what was expected and found, and what to do.
@@ -62,5 +62,17 @@ impl InputError {
 
     pub(super) fn limit(path: &Path, what: impl Into<String>) -> InputError {
         InputError::Limit { path: path.to_owned(), what: what.into() }
+    }
+}
+
+impl From<InputError> for Failure {
+    fn from(error: InputError) -> Failure {
+        let exit = match error {
+            InputError::Io { .. } => Exit::InputOutput,
+            InputError::Bad { .. } => Exit::BadInput,
+            InputError::Unsupported { .. } => Exit::Unsupported,
+            InputError::Limit { .. } => Exit::LimitExceeded,
+        };
+        Failure::new(exit, error.to_string())
     }
 }

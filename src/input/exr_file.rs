@@ -5,8 +5,10 @@ use std::path::Path;
 
 use exr::prelude::*;
 
+use super::error::InputError;
+use super::limits::check_size;
+use super::options::{Channels, InputOptions};
 use super::pixels::{Pixels, Values, sign_floats};
-use super::{Channels, InputError, InputOptions, check_size};
 
 /// Fewest bytes a chunk takes in a file: its entry in the offset table, its position and its length.
 const BYTES_PER_CHUNK: u64 = 16;

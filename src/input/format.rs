@@ -4,7 +4,7 @@ use std::path::Path;
 
 use image::ImageFormat;
 
-use super::InputError;
+use super::error::InputError;
 
 /// A format that is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::InputError;
+use super::error::InputError;
 
 /// Decoded pixels, row-major from the top left.
 pub(super) struct Pixels {

@@ -6,8 +6,10 @@ use std::path::Path;
 use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
 use super::colour_tag::ColourTag;
+use super::error::InputError;
+use super::limits::check_size;
+use super::options::InputOptions;
 use super::pixels::{Pixels, Values, sign_floats, signed};
-use super::{InputError, InputOptions, check_size};
 
 /// Bytes of decoded pixels that one byte of file can stand for: deflate reaches 1032, LZW 2730, TGA runs 128. A file
 /// that promises more is cut off, and need not be allocated for.

@@ -3,7 +3,7 @@
 use super::{Candidates, Point};
 
 /// Part of an error that a plan uses up: it is measured at some places, and holds for others.
-pub(super) const USED: f64 = 0.9;
+pub const USED: f64 = 0.9;
 
 /// What is baked for a scene.
 #[derive(Clone, Debug)]

@@ -1,8 +1,10 @@
 //! How good the packs of a scene are once they are built: read back, and measured at other places than the plan's.
 
-use super::{area_light, environment, ndf_maps};
-use crate::commands::Draft;
 use crate::exit::{Exit, Failure};
+use crate::methods::Draft;
+use crate::methods::area_light::plan as area_light;
+use crate::methods::environment::plan as environment;
+use crate::methods::ndf_maps::plan as ndf_maps;
 use crate::project::{Project, Seen, Target};
 use glint_bake_core::area_light::sections as area_light_sections;
 use glint_bake_core::environment::sections as environment_sections;

@@ -4,21 +4,16 @@
 //! reference at the footprints of the scene. The cheapest one within the error is taken. When all of them together
 //! exceed the byte budget, or an error cannot be met, the plan is the nearest that is possible, and says so.
 
-mod area_light;
 mod choose;
-mod environment;
 mod measure;
-mod ndf_maps;
-mod saved;
 mod text;
 
-pub use choose::Plan;
+pub use choose::{Plan, USED};
 pub use measure::{Measured, measure};
-pub use saved::{Fit, beyond, inputs, settle};
 
 use crate::cli::Terminal;
-use crate::commands::{Draft as Made, Method};
 use crate::exit::{Exit, Failure};
+use crate::methods::{Draft as Made, Method, area_light, environment, ndf_maps};
 use crate::project::arguments::{Methods, Words};
 use crate::project::file::{AREA_LIGHT, NDF_MAPS};
 use crate::project::scene::Scene;
@@ -140,9 +135,9 @@ impl Planner<'_> {
         let budget = error.unwrap_or(self.scene.error);
         let mut drafts = Drafts { name, way, project: self.project, methods: &mut self.methods };
         let found = match &planned.seen {
-            Seen::Surface(view) if way.method == NDF_MAPS => ndf_maps::candidates(&mut drafts, self.scene, view)?,
-            Seen::Surface(view) => area_light::candidates(&mut drafts, self.scene, view)?,
-            Seen::Sky(lobes) => environment::candidates(&mut drafts, lobes, budget)?,
+            Seen::Surface(view) if way.method == NDF_MAPS => ndf_maps::plan::candidates(&mut drafts, self.scene, view)?,
+            Seen::Surface(view) => area_light::plan::candidates(&mut drafts, self.scene, view)?,
+            Seen::Sky(lobes) => environment::plan::candidates(&mut drafts, lobes, budget)?,
         };
         let points = front(found.points);
         self.candidates.push(Candidates {
@@ -161,17 +156,17 @@ impl Planner<'_> {
 }
 
 /// What a method finds out about a pack.
-struct Found {
-    measure: &'static str,
-    seen: String,
-    dropped: Vec<String>,
-    points: Vec<Point>,
+pub struct Found {
+    pub measure: &'static str,
+    pub seen: String,
+    pub dropped: Vec<String>,
+    pub points: Vec<Point>,
 }
 
 /// Makes drafts of one pack.
-struct Drafts<'a> {
+pub struct Drafts<'a> {
     name: &'a str,
-    way: &'a Way,
+    pub way: &'a Way,
     project: &'a Project,
     methods: &'a mut Methods,
 }
@@ -189,13 +184,13 @@ impl Drafts<'_> {
     }
 
     /// A draft and the bytes of its pack.
-    fn make(&mut self, options: &[(String, String)]) -> Result<(Made, u64), Failure> {
+    pub fn make(&mut self, options: &[(String, String)]) -> Result<(Made, u64), Failure> {
         self.bake(options)?.draft()
     }
 }
 
 /// Options from names and values.
-fn options<const N: usize>(all: [(&str, String); N]) -> Vec<(String, String)> {
+pub fn options<const N: usize>(all: [(&str, String); N]) -> Vec<(String, String)> {
     all.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }
 
@@ -212,7 +207,7 @@ fn front(mut points: Vec<Point>) -> Vec<Point> {
 }
 
 /// `count` sizes from one end of a range to the other, evenly by their logarithm.
-fn sizes((low, high): (f64, f64), most: usize) -> Vec<f64> {
+pub fn sizes((low, high): (f64, f64), most: usize) -> Vec<f64> {
     let octaves = libm::log2(high / low);
     let steps = (octaves.ceil() as usize).clamp(if octaves > 0.1 { 1 } else { 0 }, most - 1);
     (0..=steps).map(|k| low * libm::exp2(octaves * k as f64 / steps.max(1) as f64)).collect()

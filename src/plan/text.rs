@@ -2,9 +2,9 @@
 
 use super::Point;
 use super::choose::{Chosen, Plan};
-use crate::info::{kib, percent};
 use crate::project::arguments::flag;
 use crate::project::scene::Scene;
+use crate::quantities::{kib, percent};
 
 impl Plan {
     /// The plan for a person.

@@ -6,7 +6,7 @@
 use super::Target;
 use super::file::Entry;
 use crate::cli::RunFlags;
-use crate::commands::Method;
+use crate::methods::Method;
 use clap::builder::ValueParser;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
 use std::any::TypeId;

@@ -9,10 +9,11 @@ pub mod freshness;
 pub mod ninja;
 pub mod record;
 pub mod scene;
+pub mod settled;
 pub mod stamp;
 
-use crate::commands::Method;
 use crate::exit::Failure;
+use crate::methods::Method;
 use arguments::Words;
 use scene::{Lobes, Scene, View};
 use std::path::{Path, PathBuf};

@@ -20,7 +20,7 @@ pub fn manifest(project: &Project, program: &str, manifest: &Path) -> String {
         value(&shell(program)),
     );
     // What is planned depends on what the maps hold.
-    let planned: String = crate::plan::inputs(project).iter().map(|input| format!(" {}", path(input))).collect();
+    let planned: String = super::settled::inputs(project).iter().map(|input| format!(" {}", path(input))).collect();
     let own = [path_text(&project.path), format!("--output={}", path_text(manifest)), format!("--program={program}")];
     text += &format!(
         "build {}: manifest {}{planned}\n  arguments = {}\n\n",

@@ -40,12 +40,12 @@ texels-per-metre = 900
 
 /// Whether glint-view was built and has an adapter.
 #[cfg(feature = "view")]
-fn can_view() -> bool {
+pub fn can_view() -> bool {
     crate::view::folder().is_some()
 }
 
 #[cfg(not(feature = "view"))]
-fn can_view() -> bool {
+pub fn can_view() -> bool {
     false
 }
 

@@ -8,11 +8,10 @@ mod plot;
 mod radiance;
 mod variants;
 
-use glint_bake_core::counting::binomial::FEW;
-use glint_bake_core::counting::pow1m::{Elementary, Native, pow1m_with};
+use glint_bake_core::counting::eval::{FEW, count_value};
+use glint_bake_core::counting::pow1m::{Elementary, LeastExact, Native, pow1m_with};
 use glint_bake_core::counting::quality::{CountingQuality, SecondWord, compare, outcomes};
 use glint_bake_core::counting::reference::ExactBinomial;
-use glint_bake_core::counting::wgsl::LeastExact;
 use glint_bake_core::rng::{ItemRng, Purpose};
 use std::time::Instant;
 use variants::{Draw, Variant, variants};
@@ -162,7 +161,7 @@ fn nanoseconds(all: &[Variant], n: f32, p: f32, q: f32) -> Vec<f64> {
         for word in &words {
             let (n, p, q) = std::hint::black_box((n, p, q));
             let [hits, misses] = draw(n, p, q, *word);
-            sum += hits.value() - misses.value();
+            sum += count_value(hits) - count_value(misses);
         }
         std::hint::black_box(sum);
         start.elapsed().as_secs_f64() * 1e9 / words.len() as f64

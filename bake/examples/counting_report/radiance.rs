@@ -1,8 +1,8 @@
 //! Mean and variance of Σ L_k n_k, the radiance of glints, for K log-uniform levels: ours and the paper's tree against
 //! the multinomial's own moments.
 
-use glint_bake_core::counting::normal::unit_from_bits;
-use glint_bake_core::counting::{Count, MAX_LEVELS, multinomial, paper};
+use glint_bake_core::counting::eval::{count_value, unit_from_bits};
+use glint_bake_core::counting::{MAX_LEVELS, multinomial, paper};
 use glint_bake_core::rng::{ItemRng, Purpose};
 use std::time::Instant;
 
@@ -49,7 +49,7 @@ pub fn table() {
                 for _ in 0..draws {
                     let counts = if ours {
                         let words = std::array::from_fn(|_| unit_from_bits(rng.bits()));
-                        multinomial(n, &weight, count, &words).map(Count::value)
+                        multinomial(n, &weight, count, &words).map(count_value)
                     } else {
                         let bits: [u32; 2 * MAX_LEVELS] = std::array::from_fn(|_| rng.bits());
                         paper::multinomial(n, &weight, count, &bits)

@@ -1,9 +1,10 @@
 //! Ways to draw a binomial number that were tried, in f32: the paper's gates and what mends them, and where to switch
 //! from the exact walk to which expansion.
 
-use glint_bake_core::counting::binomial::{binomial, whole_count};
-use glint_bake_core::counting::normal::{normal_upper_quantile, unit_from_bits};
-use glint_bake_core::counting::{Count, one_minus_pow1m, paper, pow1m};
+use glint_bake_core::counting::eval::{binomial, unit_from_bits, whole_count};
+use glint_bake_core::counting::paper::normal_upper_quantile;
+use glint_bake_core::counting::pow1m::{one_minus_pow1m, pow1m};
+use glint_bake_core::counting::{Count, paper};
 
 /// Hits and misses of n trials with chance p, q = 1 − p, from two words.
 pub type Draw = fn(f32, f32, f32, [u32; 2]) -> [Count; 2];

@@ -1,6 +1,6 @@
 // Counting: how many of N facets reflect each of K radiance levels, in time that does not grow with N.
 // Kneiphof and Klein 2025, "Real-Time Image-based Lighting of Glints", section 6, algorithm 1, Eq. 22 to 25.
-// Twin of glint-bake-core counting/{normal,pow1m,count,binomial,multinomial}.rs, where deviations from the paper are derived:
+// Twin of glint-bake-core counting/eval.rs, where deviations from the paper are derived:
 // one uniform number a binomial draw through the inverse of its distribution function, exact where few facets are hit and a
 // Cornish-Fisher expansion where many are.
 //
@@ -21,6 +21,8 @@ const GLINT_WALK_STEPS: f32 = 20.0;
 const GLINT_MOST_HALVINGS: f32 = 125.0;
 // Words are taken as at least this, half a step of 32 random bits.
 const GLINT_LEAST_WORD: f32 = 1.1641532e-10;
+// Nodes that are lighter are taken as this heavy, which they fill in part: one over the weight must be a number.
+const GLINT_LEAST_WEIGHT: f32 = 1.0e-37;
 // The nodes that are drawn of four.
 const GLINT_ONE: vec4<bool> = vec4<bool>(true, false, false, false);
 const GLINT_TWO: vec4<bool> = vec4<bool>(true, true, false, false);
@@ -72,7 +74,7 @@ struct GlintWords {
 }
 
 // Uniform numbers in (0, 1) of 32 random bits; small ones keep a resolution of 2^-32.
-fn glint_units_from_bits(bits: vec4u) -> vec4f {
+fn glint_unit_from_bits(bits: vec4u) -> vec4f {
     return min((vec4f(bits) + 0.5) * (1.0 / 4294967296.0), vec4f(0.99999994));
 }
 
@@ -124,7 +126,7 @@ fn glint_halved(y: vec4f) -> GlintHalved {
 }
 
 // `high` + `low`, both whole, as counts.
-fn glint_counts(high: vec4f, low: vec4f) -> GlintCounts {
+fn glint_count_sum(high: vec4f, low: vec4f) -> GlintCounts {
     let sum = high + low;
     if !glint_large_counts {
         return GlintCounts(sum, vec4f(0.0));
@@ -133,18 +135,18 @@ fn glint_counts(high: vec4f, low: vec4f) -> GlintCounts {
     return GlintCounts(select(high, sum, exact), select(low, vec4f(0.0), exact));
 }
 
-fn glint_counts_value(counts: GlintCounts) -> vec4f {
+fn glint_count_value(counts: GlintCounts) -> vec4f {
     return counts.high + counts.low;
 }
 
 // Counts less smaller ones.
-fn glint_counts_subtract(a: GlintCounts, b: GlintCounts) -> GlintCounts {
+fn glint_count_difference(a: GlintCounts, b: GlintCounts) -> GlintCounts {
     let high = a.high - b.high;
     if !glint_large_counts {
         return GlintCounts(high, vec4f(0.0));
     }
     let rest = (a.high - high) - b.high;
-    return glint_counts(high, rest + (a.low - b.low));
+    return glint_count_sum(high, rest + (a.low - b.low));
 }
 
 // A whole number with mean `n` by a uniform number.
@@ -219,31 +221,31 @@ fn glint_many_hits(n: GlintCounts, p: vec4f, q: vec4f, u: vec4f, y: vec4f) -> Gl
         rest = glint_product_rest(n.high, p, mean) + n.low * p;
     }
     let sigma = sqrt((mean + rest) * q);
-    let quantile = glint_normal_upper_fraction(u, y);
+    let fraction = glint_normal_upper_fraction(u, y);
     // z / sigma: one division for both.
-    let slope = quantile[0] / (quantile[1] * sigma);
+    let slope = fraction[0] / (fraction[1] * sigma);
     let z = slope * sigma;
     let z2 = z * z;
     // 72 times (1 - 6 p q) (z^2 - 3) / 24 - (q - p)^2 (2 z^2 - 5) / 36 - 1 / 24, with (q - p)^2 = 1 - 4 p q.
     let third = p * q * (14.0 - 2.0 * z2) - (z2 + 2.0);
-    let spread = sigma * z + (q - p) * (z2 - 1.0) * (1.0 / 6.0) + slope * third * (1.0 / 72.0);
-    let small = clamp(round(mean + (rest + spread)), vec4f(0.0), glint_counts_value(n));
+    let shift = sigma * z + (q - p) * (z2 - 1.0) * (1.0 / 6.0) + slope * third * (1.0 / 72.0);
+    let small = clamp(round(mean + (rest + shift)), vec4f(0.0), glint_count_value(n));
     if !glint_large_counts {
         return GlintCounts(small, vec4f(0.0));
     }
-    let large = glint_counts(mean, round(rest + spread));
+    let large = glint_count_sum(mean, round(rest + shift));
     let is_small = mean < vec4f(GLINT_WHOLE);
     return GlintCounts(select(large.high, small, is_small), select(large.low, vec4f(0.0), is_small));
 }
 
 // Hits and misses of four lots of `n` trials with hit chance `p`; they add up to `n`. Where both p and q are 0, all hit. The hits are
 // many where the uniform number `u` is small, the misses where `v` = 1 - u is. Lots that are not `drawn` are anything.
-fn glint_whole_binomials(n: GlintCounts, p: vec4f, q: vec4f, u: vec4f, v: vec4f, drawn: vec4<bool>) -> GlintSplits {
+fn glint_whole_binomial(n: GlintCounts, p: vec4f, q: vec4f, u: vec4f, v: vec4f, drawn: vec4<bool>) -> GlintSplits {
     let swapped = p >= q;
     let rare = select(p, q, swapped);
     let frequent = select(q, p, swapped);
     let word = select(u, v, swapped);
-    let value = glint_counts_value(n);
+    let value = glint_count_value(n);
     let few = value * rare <= vec4f(GLINT_FEW);
     // Logarithms of both ways are one polynomial.
     let digits = glint_digits(4.0 * u * v);
@@ -251,7 +253,7 @@ fn glint_whole_binomials(n: GlintCounts, p: vec4f, q: vec4f, u: vec4f, v: vec4f,
     let walked = glint_few_hits(value, rare, frequent, word, value * halvings, few & drawn);
     let many = glint_many_hits(n, rare, frequent, word, digits.whole + halvings);
     let hits = GlintCounts(select(many.high, walked, few), select(many.low, vec4f(0.0), few));
-    let misses = glint_counts_subtract(n, hits);
+    let misses = glint_count_difference(n, hits);
     return GlintSplits(
         GlintCounts(select(hits.high, misses.high, swapped), select(hits.low, misses.low, swapped)),
         GlintCounts(select(misses.high, hits.high, swapped), select(misses.low, hits.low, swapped)),
@@ -261,31 +263,26 @@ fn glint_whole_binomials(n: GlintCounts, p: vec4f, q: vec4f, u: vec4f, v: vec4f,
 // Hits and misses of any number `n` >= 0 of trials: the first word makes it whole, the second draws.
 fn glint_binomial(n: f32, p: f32, q: f32, bits: vec2u) -> GlintSplit {
     let none = vec4f(0.0);
-    let u = glint_units_from_bits(vec4u(bits, ~bits.y, 0u));
+    let u = glint_unit_from_bits(vec4u(bits, ~bits.y, 0u));
     let whole = GlintCounts(vec4f(glint_whole_count(n, u.x), none.xyz), none);
-    let splits = glint_whole_binomials(whole, vec4f(p, none.xyz), vec4f(q, vec3f(1.0)), u.yyyy, u.zzzz, GLINT_ONE);
+    let splits = glint_whole_binomial(whole, vec4f(p, none.xyz), vec4f(q, vec3f(1.0)), u.yyyy, u.zzzz, GLINT_ONE);
     return GlintSplit(
         GlintCount(splits.hits.high.x, splits.hits.low.x), GlintCount(splits.misses.high.x, splits.misses.low.x),
     );
 }
 
 // Four nodes of the tree: how many of `n` go left and right, with chances in proportion to the weights.
-fn glint_splits(n: GlintCounts, left: vec4f, right: vec4f, words: vec4f, drawn: vec4<bool>) -> GlintSplits {
+fn glint_split(n: GlintCounts, left: vec4f, right: vec4f, words: vec4f, drawn: vec4<bool>) -> GlintSplits {
     // Nodes without weight have chances of 0, of which all go left.
-    let share = 1.0 / max(left + right, vec4f(1.0e-37));
+    let share = 1.0 / max(left + right, vec4f(GLINT_LEAST_WEIGHT));
     // A word of 1 has a logarithm, too.
     let u = max(1.0 - words, vec4f(GLINT_LEAST_WORD));
-    return glint_whole_binomials(n, left * share, right * share, u, words, drawn);
+    return glint_whole_binomial(n, left * share, right * share, u, words, drawn);
 }
 
 // Weight of four leaves.
 fn glint_quad_weight(weights: vec4f) -> f32 {
     return (weights.x + weights.y) + (weights.z + weights.w);
-}
-
-// One node's share of four as the first of the next four.
-fn glint_first_count(high: f32, low: f32) -> GlintCounts {
-    return GlintCounts(vec4f(high, 0.0, 0.0, 0.0), vec4f(low, 0.0, 0.0, 0.0));
 }
 
 // Counts of the children of two nodes, a node after the other.
@@ -299,14 +296,14 @@ fn glint_pair_counts(x: GlintSplits) -> GlintCounts {
 // Two subtrees of four leaves, of the first two of `tops`: words of their top nodes and of the four children.
 fn glint_multinomial_eight(tops: GlintCounts, a: vec4f, b: vec4f, top: vec2f, children: vec4f, drawn: vec4<bool>) -> array<vec4f, 2> {
     let none = vec2f(0.0);
-    let halves = glint_splits(
+    let halves = glint_split(
         tops, vec4f(a.x + a.y, b.x + b.y, none), vec4f(a.z + a.w, b.z + b.w, none), vec4f(top, none), drawn & GLINT_TWO,
     );
-    let leaves = glint_splits(
+    let leaves = glint_split(
         glint_pair_counts(halves), vec4f(a.x, a.z, b.x, b.z), vec4f(a.y, a.w, b.y, b.w), children, drawn.xxyy,
     );
-    let left = glint_counts_value(leaves.hits);
-    let right = glint_counts_value(leaves.misses);
+    let left = glint_count_value(leaves.hits);
+    let right = glint_count_value(leaves.misses);
     return array<vec4f, 2>(vec4f(left.x, right.x, left.y, right.y), vec4f(left.z, right.z, left.w, right.w));
 }
 
@@ -315,8 +312,8 @@ fn glint_multinomial_eight(tops: GlintCounts, a: vec4f, b: vec4f, top: vec2f, ch
 //
 // Node i has the children 2i and 2i + 1, and its draw reads word i.
 fn glint_multinomial(n: f32, weights: GlintLevels, levels: u32, words: GlintWords) -> GlintLevels {
-    let root = glint_first_count(glint_whole_count(n, words.a.x), 0.0);
     let none = vec4f(0.0);
+    let root = GlintCounts(vec4f(glint_whole_count(n, words.a.x), none.xyz), none);
     if levels <= 4u {
         // With two levels the tree's only node is its root.
         let left = select(words.a.z, words.a.y, levels <= 2u);
@@ -326,16 +323,16 @@ fn glint_multinomial(n: f32, weights: GlintLevels, levels: u32, words: GlintWord
     let a = glint_quad_weight(weights.a);
     let b = glint_quad_weight(weights.b);
     if levels <= 8u {
-        let halves = glint_splits(root, vec4f(a, none.xyz), vec4f(b, none.xyz), vec4f(words.a.y, none.xyz), GLINT_ONE);
+        let halves = glint_split(root, vec4f(a, none.xyz), vec4f(b, none.xyz), vec4f(words.a.y, none.xyz), GLINT_ONE);
         let counts =
             glint_multinomial_eight(glint_pair_counts(halves), weights.a, weights.b, words.a.zw, words.b, GLINT_TWO);
         return GlintLevels(counts[0], counts[1], none, none);
     }
     let c = glint_quad_weight(weights.c);
     let d = glint_quad_weight(weights.d);
-    let halves = glint_splits(root, vec4f(a + b, none.xyz), vec4f(c + d, none.xyz), vec4f(words.a.y, none.xyz), GLINT_ONE);
+    let halves = glint_split(root, vec4f(a + b, none.xyz), vec4f(c + d, none.xyz), vec4f(words.a.y, none.xyz), GLINT_ONE);
     let quarters = glint_pair_counts(
-        glint_splits(glint_pair_counts(halves), vec4f(a, c, none.xy), vec4f(b, d, none.xy), vec4f(words.a.zw, none.xy), GLINT_TWO),
+        glint_split(glint_pair_counts(halves), vec4f(a, c, none.xy), vec4f(b, d, none.xy), vec4f(words.a.zw, none.xy), GLINT_TWO),
     );
     let dark = glint_multinomial_eight(quarters, weights.a, weights.b, words.b.xy, words.c, GLINT_TWO);
     let rest = GlintCounts(quarters.high.zwzw, quarters.low.zwzw);

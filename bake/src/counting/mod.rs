@@ -4,29 +4,22 @@
 //! K levels are a multinomial draw, made of K − 1 binomial ones in a binary tree ([`multinomial()`]). The paper draws
 //! a binomial number from gates and a clamped Gaussian ([`paper`], kept as a baseline). Here it is the inverse of the
 //! distribution function at one uniform number: exact where few facets are hit, a Cornish–Fisher expansion around the
-//! Gaussian ([`normal`]) where many are ([`binomial()`]). Both rest on powers (1 − p)^N that hold in f32
-//! ([`pow1m`](mod@pow1m)). [`reference`](mod@reference) says the same from the definitions in f64, and [`quality`] measures one
-//! by the other.
+//! Gaussian where many are ([`binomial()`]). Both are in [`eval`], f32, as shaders have them. [`pow1m`](mod@pow1m) holds powers
+//! (1 − p)^N against the paper's; [`reference`](mod@reference) says the same as [`eval`] from the definitions in f64, and
+//! [`quality`] measures one by the other.
 //!
-//! What deviates from the paper, and why, stands on top of each file and in `docs/METHODS.md`. The main points:
+//! What deviates from the paper, and why, stands on top of each file and in `docs/methods/counting.md`. The main points:
 //! - counts are whole numbers, their mean is Np, and their variance that of the binomial distribution;
 //! - one random word a binomial draw instead of two numbers, and counts change monotonously with p for a fixed word;
 //! - counts above 2²⁴ come with what rounding to f32 takes from them ([`Count`]): their variance holds to N = 1e16;
 //! - a fractional N is a random whole number with mean N, rounded once at the root of the tree and never below it.
 
-pub mod binomial;
-pub mod count;
-pub mod multinomial;
-pub mod normal;
+pub mod eval;
 pub mod paper;
 pub mod pow1m;
 pub mod quality;
 pub mod reference;
-pub mod wgsl;
 
 crate::shader::shaders!("counting": "eval");
 
-pub use binomial::{binomial, whole_binomial};
-pub use count::Count;
-pub use multinomial::{MAX_LEVELS, multinomial};
-pub use pow1m::{one_minus_pow1m, pow1m};
+pub use eval::{Count, MAX_LEVELS, binomial, multinomial};

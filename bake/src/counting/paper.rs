@@ -1,13 +1,19 @@
 //! The paper's own dual-gated Gaussian in f32: the baseline of the report, no part of the run time.
 //!
 //! Paper: Kneiphof and Klein 2025, section 6, algorithm 1. Line 6 is printed as (1 − c) · p^(N/c); Eq. 25 has
-//! (1 − cp)^(N/c), which is used here. Φ⁻¹ is [`super::normal`]'s, as for our own draws.
+//! (1 − cp)^(N/c), which is used here. Φ⁻¹ is that of our own draws.
 
-use super::multinomial::{MAX_LEVELS, tree_leaves};
-use super::normal::{normal_upper_quantile, unit_from_bits};
+use super::eval::{MAX_LEVELS, digits, halvings, normal_upper_fraction, tree_leaves, unit_from_bits};
 
 /// Below this p the paper scales p and N (ε = 10^−3.54).
 const EPSILON: f32 = 2.884_031_5e-4;
+
+/// z with P(Z > z) = u for a standard normal Z and 0 < u < 1, to 3e-5 for u from 2⁻³³ to ½, and antisymmetric around ½.
+pub fn normal_upper_quantile(u: f32) -> f32 {
+    let [whole, rest] = digits(4.0 * u * (1.0 - u));
+    let [over, under] = normal_upper_fraction(u, whole + halvings(rest));
+    over / under
+}
 
 /// n and n̄ of `n` ≥ 0 trials with chance `p` from 0 to 1; the first word decides the gates, the second is for the
 /// Gaussian.

@@ -5,7 +5,7 @@
 //! the middles of equal shares. Mean, variance and Wasserstein distance of the very f32 code follow without the
 //! noise of random draws.
 
-use super::count::Count;
+use super::eval::Count;
 use super::reference::ExactBinomial;
 
 /// One outcome of a draw.
@@ -26,6 +26,18 @@ pub enum SecondWord {
     Bisected,
     /// At the middles of this many equal shares.
     Shares(u32),
+}
+
+impl From<f32> for Count {
+    fn from(whole: f32) -> Count {
+        Count { high: whole, low: 0.0 }
+    }
+}
+
+impl From<Count> for f64 {
+    fn from(count: Count) -> f64 {
+        f64::from(count.high) + f64::from(count.low)
+    }
 }
 
 /// Words and how many of them up to the next change of `value`, over all 2³² words; `value` must not return to what it

@@ -6,7 +6,7 @@
 //! slope distribution; cells are averaged over the pixel footprint and put into a microfacet BRDF ([`eval`]). [`reference`]
 //! says the same from the definitions in f64, and [`quality`] measures one by the other.
 //!
-//! What deviates from the paper, and why, stands on top of each file and in `docs/METHODS.md`. The main points:
+//! What deviates from the paper, and why, stands on top of each file and in `docs/methods/dictionary.md`. The main points:
 //! - samples sit at bin centres, and a marginal is normalised as linear filtering with clamp to edge reads it, after
 //!   rounding to half floats ([`bake::to_half_with_sum`]);
 //! - lobe means are stratified across the dictionary, and drawn so that lobe and sampler together give the target's

@@ -12,7 +12,7 @@ use super::eval::{
     spread_factor,
 };
 use super::tables::Environment;
-use crate::counting::{Count, multinomial};
+use crate::counting::eval::{count_value, multinomial};
 use glam::Vec3;
 use glint_formats::environment::MAX_LEVELS;
 
@@ -104,7 +104,7 @@ fn level_counts(
     if levels == 1 {
         p[1] = 1.0 - p[0];
     }
-    multinomial(facets, &p, levels.max(2), words).map(Count::value)
+    multinomial(facets, &p, levels.max(2), words).map(count_value)
 }
 
 /// Drawn over expected light, channel by channel.

@@ -1,5 +1,5 @@
 //! MIP-mapped position-normal lobes: Tan, Zhu, Xu, Meng, Wang, Yan, *Real-Time Microstructure Rendering with MIP-mapped
-//! Normal Map Samples*, CGF 41(1), 2022. `docs/METHODS.md` has the equations and what deviates from the paper.
+//! Normal Map Samples*, CGF 41(1), 2022. `docs/methods/lobes.md` has the equations and what deviates from the paper.
 //!
 //! [`seeds`] turns texels into lobes, [`merge`] reduces them, [`bake`] builds the MIP and [`quantise`] packs it.
 //! [`query`] finds what a footprint sees as a sum over placed cells, [`eval`] is the arithmetic of one lobe;

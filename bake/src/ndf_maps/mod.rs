@@ -1,5 +1,7 @@
 //! Multi-scale NDF maps of tiny examples: Xing, Tan, Xu, Wang, *A Tiny Example Based Procedural Model for Real-Time
-//! Glinty Appearance Rendering*, JCST 39(4), 2024. `docs/METHODS.md` has the equations and what deviates from the paper.
+//! Glinty Appearance Rendering*, JCST 39(4), 2024.
+//!
+//! `docs/methods/ndf-maps.md` has the equations, and what deviates from the paper.
 //!
 //! [`bake`] makes the maps of one example, [`placement`] covers a surface with it, [`sections`] is both as a pack.
 //! [`surface`] finds what a footprint sees and [`eval`] evaluates it; [`reference`] and [`reference_surface`] are the

@@ -3,7 +3,7 @@
 //! Tan, Zhu, Xu, Meng, Wang, Yan, *Real-Time Microstructure Rendering with MIP-mapped Normal Map Samples*, 2022, sections
 //! 5.1 and 5.2. The paper stores clustered lobes for every patch of the surface; here cells of the sample's MIP begin at all
 //! multiples of the patches' alignment, so that one small set serves every patch wherever it was cut from.
-//! `docs/METHODS.md` has what deviates.
+//! `docs/methods/surface.md` has what deviates.
 //!
 //! [`mod@bake`] makes both parts, [`query`] lists what a footprint sees, [`quality`] compares it with the assembled map.
 

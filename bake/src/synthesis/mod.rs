@@ -1,5 +1,5 @@
 //! A large surface from patches of a small sample: Tan, Zhu, Xu, Meng, Wang, Yan, *Real-Time Microstructure Rendering with
-//! MIP-mapped Normal Map Samples*, 2022, section 5.1.1. `docs/METHODS.md` has the equations and what deviates.
+//! MIP-mapped Normal Map Samples*, 2022, section 5.1.1. `docs/methods/surface.md` has the equations and what deviates.
 //!
 //! [`bake()`] chooses patches ([`candidates`], [`strips`], [`cut_errors`], [`runs`], [`choose`]) and cuts seams ([`seams`]) by the
 //! distance of [`features`]; [`mod@tiles`] does so for a surface without end. [`eval`] finds the sample texel, or the whole

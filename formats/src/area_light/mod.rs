@@ -1,7 +1,7 @@
 //! Typed sections of multi-scale area lights: a mip chain of averaged normals with their meso roughness, and LTC tables.
 //!
 //! Method: Tao et al. 2021, with the tables of Heitz et al. 2016; what we store differs from the paper as
-//! `docs/METHODS.md` says. The tables are the same in every pack and depend on nothing but GGX.
+//! `docs/methods/area-light.md` says. The tables are the same in every pack and depend on nothing but GGX.
 
 pub(crate) mod check;
 

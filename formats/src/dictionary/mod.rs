@@ -1,6 +1,6 @@
 //! Typed sections of the slope dictionary: parameters, and uniforms, and one table with all marginals of all levels.
 //!
-//! Method: Chermain et al. 2020, sections 4 and 7.3; what we store differs from the paper as `docs/METHODS.md` says.
+//! Method: Chermain et al. 2020, sections 4 and 7.3; what we store differs from the paper as `docs/methods/dictionary.md` says.
 //! A dictionary is independent of roughness, density and surface: one serves a whole scene.
 
 pub(crate) mod check;

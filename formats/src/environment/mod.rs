@@ -1,7 +1,8 @@
 //! Typed sections of a prefiltered environment: parameters, radiance, indicators of radiance levels, their colours, and
 //! the two view-dependent areas that scale them.
 //!
-//! Method: Kneiphof and Klein 2025, sections 3.4 and 5; what we store differs from the paper as `docs/METHODS.md` says.
+//! Method: Kneiphof and Klein 2025, sections 3.4 and 5; what we store differs from the paper as
+//! `docs/methods/environment.md` says.
 
 pub(crate) mod check;
 

@@ -1,6 +1,6 @@
 //! Typed sections of MIP-mapped position-normal lobes: parameters, lobes of every level, and the map's normals.
 //!
-//! Method: Tan et al. 2022, section 5.1.2; what we store differs from the paper as `docs/METHODS.md` says. A lobe is a
+//! Method: Tan et al. 2022, section 5.1.2; what we store differs from the paper as `docs/methods/lobes.md` says. A lobe is a
 //! 4D Gaussian over position u (texels) and projected normal s. Its normal part leaves the intrinsic roughness σ_r out,
 //! which the evaluator adds. The finest level has no lobes: its lobes follow from the normals at run time.
 

@@ -2,7 +2,7 @@
 //!
 //! One material is one group of sections that share a name. `PARAMS`, `TILES`, `DENSITY` and `NORMALS` are
 //! always there; `PLACEMENT`, `PALETTE`, `NOISE` and `CLASSES` say how a surface is covered with examples.
-//! Method: Xing et al. 2024, sections 5 and 6; what we store differs from the paper as `docs/METHODS.md` says.
+//! Method: Xing et al. 2024, sections 5 and 6; what we store differs from the paper as `docs/methods/ndf-maps.md` says.
 
 pub(crate) mod check;
 

@@ -1,7 +1,7 @@
 //! Typed sections of patch synthesis: where each patch of a large surface lies in a small sample, and along which seams
 //! patches meet.
 //!
-//! Method: Tan et al. 2022, section 5.1.1; what we store differs from the paper as `docs/METHODS.md` says. Nothing here
+//! Method: Tan et al. 2022, section 5.1.1; what we store differs from the paper as `docs/methods/surface.md` says. Nothing here
 //! depends on what a texel holds: normals, lobes and their MIP are read through the same look-up.
 
 pub(crate) mod check;

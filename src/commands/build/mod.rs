@@ -5,8 +5,8 @@ mod work;
 use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
 use crate::output;
-use crate::plan::{self, Fit};
 use crate::project::freshness::Freshness;
+use crate::project::settled::{self, Fit};
 use crate::project::{Project, Target};
 use clap::builder::RangedU64ValueParser;
 use glint_formats::container::{TEMPORARY_PREFIX, TEMPORARY_SUFFIX};
@@ -65,7 +65,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
             Failure::new(Exit::Unexpected, format!("{threads} threads cannot be started: {e}; give fewer"))
         })?;
     }
-    let fit = plan::settle(&mut project, !args.check && !args.dry_run, terminal)?;
+    let fit = settled::settle(&mut project, !args.check && !args.dry_run, terminal)?;
     project.select(&args.only)?;
     let states: Vec<_> = project.targets.par_iter().map(|target| Freshness::of(&project, target)).collect();
     if args.check {
@@ -83,7 +83,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     }
     match fit {
         Fit::Kept => Ok(()),
-        Fit::Nearest => Err(plan::beyond(&project)),
+        Fit::Nearest => Err(settled::beyond(&project)),
     }
 }
 

@@ -2,12 +2,12 @@
 
 use crate::cli::Terminal;
 use crate::exit::Failure;
-use crate::info::kib;
 use crate::progress;
 use crate::project::freshness::Freshness;
 use crate::project::record::Record;
 use crate::project::stamp::{Stamp, Stat};
 use crate::project::{Project, Target};
+use crate::quantities::kib;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};

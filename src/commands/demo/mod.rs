@@ -4,11 +4,13 @@ mod look;
 
 use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
-use crate::info::{Report, kib};
+use crate::info::Report;
 use crate::input::synthetic;
+use crate::methods::ndf_maps::bake::{Baked, assemble, bake_material};
 use crate::output;
-use crate::pack::{self, Baked};
+use crate::pack;
 use crate::progress::Stages;
+use crate::quantities::kib;
 use glint_bake_core::ndf_maps::bake::NdfMapsOptions;
 use glint_bake_core::ndf_maps::placement::{PlacementOptions, StochasticOptions};
 use glint_bake_core::ndf_maps::transform::TransformRanges;
@@ -73,7 +75,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let (pack_path, picture_path) = (folder.join("demo.glintpack"), folder.join("demo.png"));
     output::check_writable(&pack_path)?;
     output::check_writable(&picture_path)?;
-    super::on_threads(args.threads, || {
+    crate::cli::on_threads(args.threads, || {
         let start = Instant::now();
         output::write(&pack_path, &bake(terminal)?)?;
         let baked = start.elapsed();
@@ -110,7 +112,7 @@ fn bake(terminal: Terminal) -> Result<Vec<u8>, Failure> {
             seed: SEED,
             ..Default::default()
         });
-        let material = pack::bake(&map, &NdfMapsOptions::default(), &placement, &stages)
+        let material = bake_material(&map, &NdfMapsOptions::default(), &placement, &stages)
             .map_err(|e| Failure::bake(Path::new(example.name), &e))?;
         materials.push(Baked { name: example.name.to_owned(), material });
     }
@@ -119,7 +121,7 @@ fn bake(terminal: Terminal) -> Result<Vec<u8>, Failure> {
     provenance.seed = SEED;
     provenance.inputs = inputs;
     provenance.normal_convention = "y-up".into();
-    pack::assemble(&materials, Some(&layers), &provenance, Codec::None)
+    assemble(&materials, Some(&layers), &provenance, Codec::None)
 }
 
 /// The built-in maps take the same way as a file's content does.

@@ -18,7 +18,7 @@ use plan::Plan;
 /// Runs the subcommand.
 pub fn run(args: Args, terminal: Terminal) -> Result<(), Failure> {
     let threads = args.run.threads;
-    super::on_threads(threads, || bake(args, terminal))?
+    crate::cli::on_threads(threads, || bake(args, terminal))?
 }
 
 /// A bake that is only looked at: maps and materials, and the bytes that the pack would have.

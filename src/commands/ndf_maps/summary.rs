@@ -1,7 +1,7 @@
 //! What a bake says to the person who runs it.
 
 use super::plan::{Plan, Source};
-use crate::info::percent;
+use crate::quantities::percent;
 use crate::pack;
 
 /// One input, for `--verbose`.

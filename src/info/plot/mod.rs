@@ -1,15 +1,13 @@
 //! Pictures of what a pack holds: NDF tiles, normals, placement, tile errors, dictionaries, environments, area lights,
 //! lobes, seams of surfaces.
 
-mod cubes;
-mod histogram;
-mod lobes;
-mod maps;
-mod marginals;
-mod mip_rows;
-
 use crate::canvas::Canvas;
 use crate::exit::{Exit, Failure};
+use crate::methods::area_light::plot as mip_rows;
+use crate::methods::dictionary::plot as marginals;
+use crate::methods::environment::plot as cubes;
+use crate::methods::lobes::plot as lobes;
+use crate::methods::ndf_maps::{histogram, plot as maps};
 use crate::output;
 use glam::DVec2;
 use glint_bake_core::footprint::Footprint;
@@ -116,11 +114,6 @@ fn payload<'a>(pack: &'a Pack, kind: FourCc, name: &str) -> Option<(Texture, Cow
 fn picture_of(pack: &Pack, kind: FourCc, name: &str, draw: impl Fn(&Texels) -> Canvas) -> Option<Canvas> {
     let (texture, bytes) = payload(pack, kind, name)?;
     Texels::new(texture, &bytes).map(|texels| draw(&texels))
-}
-
-/// Text as it stands in an SVG.
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 /// A file name for a material, whose own name may hold anything.

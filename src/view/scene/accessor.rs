@@ -1,7 +1,7 @@
 //! The part of glTF 2.0's JSON that geometry needs (specification, sections 3.6 and 3.7), and numbers out of its buffers.
 //! Every index, offset and count is checked before use; integer components are read too (KHR_mesh_quantization).
 
-use super::assemble::Fault;
+use super::fault::Fault;
 use super::mesh::MAX_TRIANGLES;
 use serde::Deserialize;
 use std::collections::HashMap;

@@ -1,23 +1,14 @@
 //! From the corners of triangles, as files have them, to vertices with all that a viewer needs.
 
+use super::fault::Fault;
 use super::mesh::{Bounds, Mesh, Vertex};
 use super::shapes::SIDES;
 use super::tangents;
 use glam::{Vec2, Vec3, Vec4};
 use std::collections::HashMap;
-use std::path::PathBuf;
 
 /// Largest coordinate: squares and areas of anything smaller are far from the largest f32.
 const MAX_COORDINATE: f32 = 1.0e15;
-
-/// What is wrong with a file that the caller knows the name of; see [`super::MeshError`].
-#[derive(Debug)]
-pub(super) enum Fault {
-    Bad(String),
-    Unsupported(String),
-    TooLarge(String),
-    Io(PathBuf, std::io::Error),
-}
 
 /// One corner of a triangle.
 #[derive(Clone, Copy, Debug)]

@@ -5,8 +5,9 @@
 //! files that require extensions of materials, which a viewer of geometry can pass over.
 
 use super::accessor::{Document, Node, Primitive, Source};
-use super::assemble::{Corner, Fault, MissingNormals, Part};
-use super::mesh::{MAX_FILE_BYTES, MAX_TRIANGLES, read_file};
+use super::assemble::{Corner, MissingNormals, Part};
+use super::fault::{Fault, read_file};
+use super::mesh::{MAX_FILE_BYTES, MAX_TRIANGLES};
 use glam::{Mat3, Mat4, Quat, Vec3, Vec4};
 use std::path::Path;
 

@@ -3,11 +3,14 @@
 mod accessor;
 mod assemble;
 mod camera;
+mod fault;
 mod glb;
+mod load;
 mod mesh;
 mod obj;
 mod shapes;
 mod tangents;
 
 pub use camera::{CameraTextError, Orbit, Placement};
-pub use mesh::{Bounds, MAX_FILE_BYTES, MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshError, Vertex};
+pub use load::MeshError;
+pub use mesh::{Bounds, MAX_FILE_BYTES, MAX_TRIANGLES, MAX_VERTICES, Mesh, Vertex};

@@ -2,7 +2,8 @@
 //!
 //! The tobj crate is not used: its errors name no line.
 
-use super::assemble::{Corner, Fault, MissingNormals, Part};
+use super::assemble::{Corner, MissingNormals, Part};
+use super::fault::Fault;
 use super::mesh::MAX_TRIANGLES;
 use glam::{Vec2, Vec3};
 

@@ -7,9 +7,8 @@
 
 use crate::support::{QUERIES, compare, gpu, log_uniform, random};
 use bytemuck::{Pod, Zeroable};
-use glint_bake_core::counting::multinomial::tree_leaves;
-use glint_bake_core::counting::normal::unit_from_bits;
-use glint_bake_core::counting::{Count, MAX_LEVELS, binomial, multinomial};
+use glint_bake_core::counting::eval::{count_value, tree_leaves, unit_from_bits};
+use glint_bake_core::counting::{MAX_LEVELS, binomial, multinomial};
 use glint_view::gpu::answer;
 use rand::RngExt;
 
@@ -125,7 +124,7 @@ fn multinomial_counts_of_the_shader_are_those_of_the_cpu() {
     let mut same = Vec::new();
     for (query, answer) in queries.iter().zip(&answers) {
         let levels = query.levels as usize;
-        let at = |words: &[f32; MAX_LEVELS]| multinomial(query.n, &query.weights, levels, words).map(Count::value);
+        let at = |words: &[f32; MAX_LEVELS]| multinomial(query.n, &query.weights, levels, words).map(count_value);
         let agrees = |expected: &[f32; MAX_LEVELS]| {
             answer.counts.iter().zip(expected).all(|(a, e)| (a - e).abs() <= 1e-3 * a.abs().max(e.abs()) + 1e-5)
         };

@@ -7,8 +7,8 @@ use crate::counting::{MAX_FLIPPED, beside};
 use crate::support::{QUERIES, agree, compare, gpu, log_uniform, random, real_file};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
-use glint_bake_core::counting::multinomial::tree_leaves;
-use glint_bake_core::counting::normal::unit_from_bits;
+use glint_bake_core::counting::eval::tree_leaves;
+use glint_bake_core::counting::eval::unit_from_bits;
 use glint_bake_core::environment::cells::{
     footprint_area, footprint_facets, surface_cells, surface_lod, surface_words,
 };

@@ -1,0 +1,68 @@
+//! What is refused before it is decoded, for every kind of file.
+
+use super::error::InputError;
+use glint_bake_core::error::BakeError;
+use std::path::Path;
+
+/// Most texels a side, the size that every GPU class we bake for can hold.
+pub const MAX_SIDE: u32 = 16_384;
+
+/// The bytes of a file, when they fit.
+pub(super) fn read(path: &Path, max_memory: u64) -> Result<Vec<u8>, InputError> {
+    let io = |source| InputError::Io { path: path.to_owned(), source };
+    let meta = std::fs::metadata(path).map_err(io)?;
+    if meta.is_dir() {
+        return Err(io(std::io::Error::new(std::io::ErrorKind::IsADirectory, "is a folder; name an image file in it")));
+    }
+    if meta.len() > max_memory {
+        return Err(InputError::limit(
+            path,
+            format!("the file has {} bytes, the limit is {max_memory}; raise --max-memory", meta.len()),
+        ));
+    }
+    let bytes = std::fs::read(path).map_err(io)?;
+    if bytes.is_empty() {
+        return Err(InputError::bad(path, "the file is empty (0 bytes); expected an image"));
+    }
+    Ok(bytes)
+}
+
+/// Refuses a size before anything is allocated for it. `decoder_bytes_per_texel` is what the decoder itself holds.
+pub(super) fn check_size(
+    path: &Path,
+    (width, height): (u64, u64),
+    decoder_bytes_per_texel: u64,
+    max_memory: u64,
+) -> Result<(), InputError> {
+    if width == 0 || height == 0 {
+        return Err(InputError::bad(path, format!("the image is {width}×{height}; expected at least 1×1 texels")));
+    }
+    if width.max(height) > MAX_SIDE as u64 {
+        return Err(InputError::limit(
+            path,
+            format!(
+                "the image is {width}×{height}; at most {MAX_SIDE} texels a side: scale it down or cut it into tiles"
+            ),
+        ));
+    }
+    // Three floats a texel while decoding, two floats in the finished map.
+    let needed = width * height * (decoder_bytes_per_texel + 12 + 8);
+    if needed > max_memory {
+        return Err(InputError::limit(
+            path,
+            format!(
+                "the image is {width}×{height} and needs {needed} bytes to load, the limit is {max_memory}; raise \
+                 --max-memory or scale it down"
+            ),
+        ));
+    }
+    Ok(())
+}
+
+/// What a bake says of a file's content.
+pub(super) fn from_bake(path: &Path, error: BakeError) -> InputError {
+    match error {
+        BakeError::LimitExceeded(what) => InputError::limit(path, what),
+        BakeError::BadOption(what) | BakeError::BadInput(what) => InputError::bad(path, what),
+    }
+}

@@ -1,0 +1,181 @@
+//! From a file on disk to a validated normal map: format by content, limits before decoding, errors that name the file.
+//!
+//! Rules for every format:
+//! - 8- and 16-bit values decode as a GPU reads UNORM: v / (2ᵇ − 1), then n = 2x − 1. So (128, 128, 255), which painting
+//!   programs mean as flat, leans by 0.0039; that is what a renderer sees, and so what is baked.
+//! - Float values are 0…1 or −1…1; which of them is told from the data and noted.
+//! - Normals are linear data. A file tagged as sRGB is refused, since its maker may or may not have encoded it;
+//!   `assume_linear` says that the values are to be taken as they are. JPEG without a profile carries no tag.
+
+use super::error::InputError;
+use super::format::{self, Format};
+use super::limits::{from_bake, read};
+use super::options::{Channels, Crop, InputOptions};
+use super::pixels::{self, Pixels, Values};
+use super::{exr_file, raster};
+use crate::exit::{Exit, Failure};
+use glint_bake_core::normal_map::{GreenAxis, NormalMap, NormalOptions, NormalReport, RawNormals};
+use glint_formats::provenance::InputDigest;
+use std::path::Path;
+
+/// Mean normals that lean further than this (degrees) are worth a warning: real maps stay below 13.
+const TILT_DEGREES: f64 = 20.0;
+
+/// A normal map with where it came from and what was noticed.
+#[derive(Clone, Debug)]
+pub struct LoadedMap {
+    /// The validated map, +Y up.
+    pub map: NormalMap,
+    /// What was measured and mended.
+    pub report: NormalReport,
+    /// Name of the file, without folders.
+    pub file_name: String,
+    /// xxh3-64 of the file's bytes, 16 hex digits.
+    pub digest: String,
+    /// Size of the file.
+    pub bytes: u64,
+    /// What the user should know, one sentence each.
+    pub warnings: Vec<String>,
+    /// The convention that the file was read with, for provenance.
+    pub convention: String,
+}
+
+/// Digest of the bytes that were loaded.
+pub fn digest(path: &Path, loaded: &LoadedMap) -> Result<InputDigest, Failure> {
+    let bytes = std::fs::read(path).map_err(|e| Failure::io(path, "cannot be read", &e))?;
+    if format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&bytes)) != loaded.digest {
+        let message = format!("{}: changed while it was read; run again once it is at rest", path.display());
+        return Err(Failure::new(Exit::InputOutput, message));
+    }
+    Ok(InputDigest::of(&loaded.file_name, &bytes))
+}
+
+/// Loads and validates a normal map (or, with `options.height`, a height map).
+///
+/// # Errors
+/// [`InputError`]; each kind has its own exit code, and the message names the file, what was expected and found, and
+/// what to do.
+pub fn load_normal_map(path: &Path, options: &InputOptions) -> Result<LoadedMap, InputError> {
+    let bytes = read(path, options.max_memory)?;
+    let (pixels, mut warnings) = decode(path, &bytes, options)?;
+    let raw = raw_normals(path, pixels, options, &mut warnings)?;
+    let normal_options =
+        NormalOptions { wrap: options.wrap, y: if options.height.is_some() { GreenAxis::Up } else { options.y } };
+    let (map, report) = NormalMap::from_vectors(&raw, &normal_options).map_err(|e| from_bake(path, e))?;
+    warn_of(&report, options, &mut warnings);
+    Ok(LoadedMap {
+        map,
+        report,
+        file_name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        digest: format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&bytes)),
+        bytes: bytes.len() as u64,
+        warnings,
+        convention: convention(options),
+    })
+}
+
+/// Pixels of any format, and the notes of reading them.
+fn decode(path: &Path, bytes: &[u8], options: &InputOptions) -> Result<(Pixels, Vec<String>), InputError> {
+    let format = format::detect(path, bytes)?;
+    let mut notes: Vec<String> = format::extension_note(path, format).into_iter().collect();
+    let pixels = match format {
+        Format::Exr => exr_file::decode(path, bytes, options, &mut notes)?,
+        Format::Raster(raster) => raster::decode(path, bytes, raster, options, &mut notes)?,
+    };
+    Ok((pixels, notes))
+}
+
+/// Colours or heights as raw normals, cropped.
+fn raw_normals(
+    path: &Path,
+    pixels: Pixels,
+    options: &InputOptions,
+    notes: &mut Vec<String>,
+) -> Result<RawNormals, InputError> {
+    let Pixels { width, height, values } = pixels;
+    let raw = match (values, options.height) {
+        (Values::Grey(heights), Some(scale)) => {
+            RawNormals::from_heights(width, height, &heights, scale, options.wrap).map_err(|e| from_bake(path, e))?
+        }
+        (Values::Colour(colours), Some(scale)) => {
+            let heights = pixels::grey_of(path, width, &colours, notes)?;
+            RawNormals::from_heights(width, height, &heights, scale, options.wrap).map_err(|e| from_bake(path, e))?
+        }
+        (Values::Grey(_), None) => {
+            return Err(InputError::bad(
+                path,
+                "the image has one channel (grey); expected a normal map in red, green, blue. For a height map give \
+                 --height SCALE, the height in texels of white",
+            ));
+        }
+        (Values::Colour(vectors), None) => match options.channels {
+            Channels::Xyz => RawNormals { width, height, vectors },
+            Channels::Xy => {
+                let xy: Vec<[f32; 2]> = vectors.iter().map(|v| [v[0], v[1]]).collect();
+                RawNormals::from_xy(width, height, &xy).map_err(|e| from_bake(path, e))?
+            }
+        },
+    };
+    match options.crop {
+        Some(Crop { x, y, w, h }) => raw.crop(x, y, w, h).map_err(|e| from_bake(path, e)),
+        None => Ok(raw),
+    }
+}
+
+/// What the measurements tell that the user should know.
+fn warn_of(report: &NormalReport, options: &InputOptions, warnings: &mut Vec<String>) {
+    let percent = |count: u64| 100.0 * count as f64 / report.texels as f64;
+    if report.off_unit > 0 {
+        warnings.push(format!(
+            "{:.1} % of the normals are off unit length by more than 1 % ({:.3} to {:.3}); renormalised",
+            percent(report.off_unit),
+            report.min_length,
+            report.max_length
+        ));
+    }
+    if report.below_horizon > 0 {
+        warnings
+            .push(format!("{} normals point below the horizon (z ≤ 0); pushed just above it", report.below_horizon));
+    }
+    if report.zero_length > 0 {
+        warnings.push(format!("{} normals have no direction (mid-grey); taken as flat", report.zero_length));
+    }
+    if report.flipped_green_suspected && options.height.is_none() {
+        let (this, other) = match options.y {
+            GreenAxis::Up => ("up", "down"),
+            GreenAxis::Down => ("down", "up"),
+        };
+        warnings.push(format!(
+            "the green channel looks flipped (curl correlation {:+.2}): read as +Y {this}; if glints move the wrong \
+             way, give --normal-y {other}",
+            report.curl_correlation.unwrap_or(0.0)
+        ));
+    }
+    if report.seam_suspected {
+        warnings.push(
+            "opposite edges do not fit, so the repeated map shows a seam; give --wrap clamp if it is not meant to tile"
+                .into(),
+        );
+    }
+    let tilt = report.mean_normal[0].hypot(report.mean_normal[1]).atan2(report.mean_normal[2]).to_degrees();
+    if tilt > TILT_DEGREES {
+        warnings.push(format!("the mean normal leans by {tilt:.0}°; is this a tangent-space normal map?"));
+    }
+    if report.is_flat {
+        warnings.push("the map is flat to within one 8-bit step; it can make no glints of its own".into());
+    }
+}
+
+fn convention(options: &InputOptions) -> String {
+    if let Some(scale) = options.height {
+        return format!("height map, white {scale} texels high");
+    }
+    let y = match options.y {
+        GreenAxis::Up => "+Y up (OpenGL)",
+        GreenAxis::Down => "+Y down (DirectX)",
+    };
+    match options.channels {
+        Channels::Xyz => y.to_owned(),
+        Channels::Xy => format!("{y}, two channels"),
+    }
+}

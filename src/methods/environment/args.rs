@@ -1,0 +1,182 @@
+//! Flags of `glint-bake environment`.
+
+use crate::cli::{RunFlags, values};
+use clap::ValueEnum;
+use glint_bake_core::environment::EnvironmentOptions;
+use glint_bake_core::environment::options::{DEFAULT_MIN_FACE_SIZE, LevelCount};
+use glint_formats::environment::{Kernel, LevelChoice, Storage};
+use std::path::PathBuf;
+
+/// Lines that `--help` shows and a test runs.
+const EXAMPLES: &str = "\
+Examples:
+  glint-bake environment sky.hdr --face-size 64 -o sky.glintpack
+  glint-bake environment sky.hdr --face-size 32 --levels auto --coloured -o lamps.glintpack";
+
+/// Bake an HDR environment for image-based lighting of glints
+///
+/// Radiance and the share of a few radiance levels, filtered with GGX at the roughness of each mip, to an error bound;
+/// and the two areas that depend on view angle and roughness only.
+#[derive(clap::Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Equirectangular image of linear radiance: Radiance HDR or OpenEXR
+    #[arg(value_name = "IMAGE")]
+    pub input: PathBuf,
+    /// Pack to write
+    #[arg(short, long, value_name = "PACK")]
+    pub output: PathBuf,
+
+    /// Edge of a cube face in texels, a power of two, 4 to 8192
+    #[arg(long, value_name = "N", default_value = "256", allow_negative_numbers = true, help_heading = "Bake")]
+    pub face_size: u32,
+    /// Edge of a face of the last mip, which has roughness 1 [default: 8, or --face-size if smaller]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Bake")]
+    pub min_face_size: Option<u32>,
+    /// Radiance levels, 1 to 16, or auto: the fewest that meet --max-moment-error
+    #[arg(long, value_name = "K", default_value = "4", value_parser = level_count, help_heading = "Bake")]
+    pub levels: u32,
+    /// How levels are chosen: optimal, or log-uniform as in the paper
+    #[arg(long, value_name = "CHOICE", default_value = "optimal", hide_possible_values = true, help_heading = "Bake")]
+    pub level_choice: LevelChoiceArg,
+    /// Darkest radiance that log-uniform levels tell apart
+    #[arg(
+        long,
+        value_name = "RADIANCE",
+        default_value = "0.001",
+        allow_negative_numbers = true,
+        help_heading = "Bake"
+    )]
+    pub floor: f64,
+    /// Mean relative error of the second moment that auto levels may have
+    #[arg(long, value_name = "E", default_value = "0.1", value_parser = values::positive, allow_negative_numbers = true, help_heading = "Bake")]
+    pub max_moment_error: f64,
+    /// Give each level a colour of its own, so that red and blue lamps make red and blue glints
+    #[arg(long, help_heading = "Bake")]
+    pub coloured: bool,
+    /// Root mean square error of a mip over its mean, 0.0001 to 0.2; four times that below roughness 0.04
+    #[arg(long, value_name = "E", default_value = "0.005", allow_negative_numbers = true, help_heading = "Bake")]
+    pub max_error: f64,
+    /// Filter: ndf (the paper's, D times masking) or ggx-nl (D times cosine)
+    #[arg(long, value_name = "KERNEL", default_value = "ndf", hide_possible_values = true, help_heading = "Bake")]
+    pub kernel: KernelArg,
+    /// Texels: f16, f32, or unorm16 for levels with f16 for radiance
+    #[arg(long, value_name = "FORMAT", default_value = "f16", hide_possible_values = true, help_heading = "Bake")]
+    pub format: FormatArg,
+    /// Texels a mip that are compared with exact sums; 0 for none
+    #[arg(long, value_name = "N", default_value = "16", allow_negative_numbers = true, help_heading = "Bake")]
+    pub measure: u32,
+    /// Compress the pack's sections with Zstandard
+    #[arg(long, help_heading = "Bake")]
+    pub compress: bool,
+
+    #[command(flatten)]
+    pub run: RunFlags,
+}
+
+/// A number of levels; 0 for `auto`.
+fn level_count(text: &str) -> Result<u32, String> {
+    match text {
+        "auto" => Ok(0),
+        _ => text
+            .parse()
+            .ok()
+            .filter(|count| *count > 0)
+            .ok_or_else(|| format!("--levels: expected 1 to 16, or auto, found {text}")),
+    }
+}
+
+/// `--kernel`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum KernelArg {
+    /// The paper's: D · G₁.
+    Ndf,
+    /// The usual one: D · cosine.
+    GgxNl,
+}
+
+/// `--level-choice`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LevelChoiceArg {
+    /// Least error of the second moment.
+    Optimal,
+    /// The paper's.
+    LogUniform,
+}
+
+/// `--format`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FormatArg {
+    /// Half floats.
+    F16,
+    /// Floats.
+    F32,
+    /// Levels as 16-bit UNORM, radiance as half floats.
+    Unorm16,
+}
+
+impl Args {
+    pub fn min_face_size(&self) -> u32 {
+        self.min_face_size.unwrap_or(DEFAULT_MIN_FACE_SIZE.min(self.face_size))
+    }
+
+    /// Options of the bake.
+    pub fn options(&self) -> EnvironmentOptions {
+        EnvironmentOptions {
+            face_size: self.face_size,
+            min_face_size: self.min_face_size(),
+            levels: match self.levels {
+                0 => LevelCount::Fewest(self.max_moment_error),
+                count => LevelCount::Exactly(count),
+            },
+            level_choice: match self.level_choice {
+                LevelChoiceArg::Optimal => LevelChoice::Optimal,
+                LevelChoiceArg::LogUniform => LevelChoice::LogUniform,
+            },
+            floor: self.floor,
+            coloured: self.coloured,
+            max_error: self.max_error,
+            kernel: match self.kernel {
+                KernelArg::Ndf => Kernel::Ndf,
+                KernelArg::GgxNl => Kernel::GgxNl,
+            },
+            storage: match self.format {
+                FormatArg::F16 => Storage::F16,
+                FormatArg::F32 => Storage::F32,
+                FormatArg::Unorm16 => Storage::Unorm16,
+            },
+            measured_texels: self.measure,
+        }
+    }
+
+    /// Name of the environment in its pack: the file's, without what a section name cannot hold.
+    pub fn name(&self) -> String {
+        let stem = self.input.file_stem().unwrap_or_default().to_string_lossy();
+        let mut name = String::new();
+        for c in stem.chars().map(|c| if c.is_control() { '_' } else { c }) {
+            if name.len() + c.len_utf8() > glint_formats::container::MAX_NAME_BYTES {
+                break;
+            }
+            name.push(c);
+        }
+        name
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Cli {
+        #[command(flatten)]
+        args: Args,
+    }
+
+    #[test]
+    fn the_flags_and_the_bake_have_the_same_defaults() {
+        let cli = Cli::parse_from(["environment", "sky.hdr", "-o", "out.glintpack"]);
+        assert_eq!(cli.args.options(), EnvironmentOptions::default());
+    }
+}

@@ -1,0 +1,113 @@
+//! One environment, as numbers.
+
+use crate::quantities::{kib, percent};
+use glint_formats::Pack;
+use glint_formats::environment::{ALBEDO, COLOURS, EnvironmentParams, INDICATORS, PARAMS, RADIANCE};
+use serde::Serialize;
+use std::fmt::Write;
+
+/// One environment.
+#[derive(Debug, Serialize)]
+pub struct EnvironmentInfo {
+    /// Name in the pack.
+    pub name: String,
+    /// Its parameters.
+    pub params: EnvironmentParams,
+    /// Bytes of all its textures once decompressed.
+    pub texture_bytes: u64,
+}
+
+impl EnvironmentInfo {
+    /// Describes every environment of a sound pack.
+    pub fn all_of(pack: &Pack) -> Vec<EnvironmentInfo> {
+        let entries = pack.sections().iter().filter(|entry| entry.kind == PARAMS);
+        let describe = |entry: &glint_formats::SectionEntry| {
+            let params = glint_formats::params::decode::<EnvironmentParams>(&pack.payload(entry).ok()?).ok()?;
+            let textures = [RADIANCE, INDICATORS, COLOURS, ALBEDO];
+            let bytes = textures.iter().filter_map(|kind| Some(pack.find(*kind, &entry.name)?.raw_len)).sum();
+            Some(EnvironmentInfo { name: entry.name.clone(), params, texture_bytes: bytes })
+        };
+        entries.filter_map(describe).collect()
+    }
+
+    /// Size and error on one line.
+    pub fn accuracy_line(&self) -> String {
+        let params = &self.params;
+        let measured = &params.measured;
+        let worst = |of: fn(&glint_formats::environment::MeasuredMip) -> f64| {
+            measured.mips.iter().skip(1).map(of).fold(0.0, f64::max)
+        };
+        let error = if measured.mips.is_empty() {
+            "error not measured".to_owned()
+        } else {
+            format!(
+                "RMSE {} of the mean at most, worst texel {}",
+                percent(worst(|m| m.rmse)),
+                percent(worst(|m| m.worst))
+            )
+        };
+        format!(
+            "{}² × 6 × {} mips, {}, {} levels ({} too much variance to take back at run time), {error}",
+            params.face_size,
+            params.mips(),
+            kib(self.texture_bytes),
+            params.levels.len(),
+            percent(measured.second_moment)
+        )
+    }
+
+    /// The part of the text report that is about this environment.
+    pub fn to_text(&self) -> String {
+        let params = &self.params;
+        let measured = &params.measured;
+        let mut out = String::new();
+        // Writing to a string cannot fail.
+        let _ = writeln!(out, "environment \"{}\"", self.name);
+        let _ = writeln!(
+            out,
+            "  source       {} × {} pixels, {} of them negative and taken as 0",
+            params.source_width, params.source_height, params.negative_pixels
+        );
+        let [r, g, b] = params.mean_radiance;
+        let _ = writeln!(out, "  mean         {r:.5}, {g:.5}, {b:.5}");
+        let _ = writeln!(out, "  filter       {}, error {} of the mean asked", kebab(&params.kernel), params.max_error);
+        let _ = writeln!(
+            out,
+            "  storage      {}, radiance over {}, {}",
+            kebab(&params.storage),
+            params.radiance_scale,
+            kib(self.texture_bytes)
+        );
+        let _ = writeln!(out, "  energy       {:.1e} from that of the source", measured.energy);
+        let levels: Vec<String> = params.levels.iter().map(|level| format!("{level:.5}")).collect();
+        let colours = if params.coloured { ", with colours" } else { "" };
+        let _ = writeln!(out, "  levels       {}{colours}: {}", kebab(&params.level_choice), levels.join(" "));
+        let _ = writeln!(
+            out,
+            "  ⟨L²⟩         of levels {} too high on average, exact in the alpha of radiance",
+            percent(measured.second_moment)
+        );
+        let _ = writeln!(out, "  mips             face     roughness         RMSE  worst texel     rounding");
+        for (mip, alpha) in params.roughness.iter().enumerate() {
+            let error = measured
+                .mips
+                .get(mip)
+                .map_or((String::from("-"), String::from("-")), |m| (percent(m.rmse), percent(m.worst)));
+            let _ = writeln!(
+                out,
+                "    {mip:<10} {:>6} {alpha:>13.5} {:>12} {:>12} {:>12}",
+                params.face_size >> mip,
+                error.0,
+                error.1,
+                measured.rounding.get(mip).map_or(String::from("-"), |rounding| percent(*rounding))
+            );
+        }
+        out
+    }
+}
+
+/// A unit variant as the pack's JSON and the flags spell it.
+fn kebab(value: &impl Serialize) -> String {
+    let text = serde_json::to_string(value).unwrap_or_default();
+    text.trim_matches('"').to_owned()
+}

@@ -1,0 +1,153 @@
+//! Flags of `glint-bake ndf-maps`.
+
+use crate::cli::normal_maps::InputFlags;
+use crate::cli::{RunFlags, values};
+use clap::ValueEnum;
+use glint_bake_core::ndf_maps::transform::TransformRanges;
+use glint_formats::ndf_maps::DensityStorage;
+use std::path::PathBuf;
+
+/// Lines that `--help` shows and a test runs.
+const EXAMPLES: &str = "\
+Examples:
+  glint-bake ndf-maps flakes.png --placement stochastic -o paint.glintpack
+  glint-bake ndf-maps flakes.png scratches.png --layers scratches:flakes -o coated.glintpack";
+
+/// Bake multi-scale NDF maps of small normal maps
+///
+/// Each MAP becomes one material of the pack. Maps are small examples (up to 128 x 128 texels, or --crop of larger
+/// ones) that the placement repeats over a surface of any size.
+#[derive(clap::Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Normal maps: PNG, TGA, JPEG, TIFF, WebP or EXR
+    #[arg(required = true, value_name = "MAP")]
+    pub maps: Vec<PathBuf>,
+    /// Pack to write
+    #[arg(short, long, value_name = "PACK")]
+    pub output: PathBuf,
+    /// Name of a material, once a map in the same order [default: the file's name]
+    #[arg(long, value_name = "NAME")]
+    pub name: Vec<String>,
+
+    /// Intrinsic roughness: standard deviation of each normal's lobe in the projected-normal disk, 0.0001 to 1
+    #[arg(long, value_name = "SIGMA", default_value = "0.02", value_parser = values::positive, help_heading = "Bake")]
+    pub roughness: f64,
+    /// Values for --max-error and --storage at once; either flag wins over it
+    #[arg(long, value_name = "PRESET", default_value = "balanced", help_heading = "Bake")]
+    pub preset: Preset,
+    /// Error E1 asked of tiles on average, three times that of each; given, missing it fails the bake
+    /// [default: by preset]
+    #[arg(long, value_name = "E1", value_parser = values::positive, help_heading = "Bake")]
+    pub max_error: Option<f64>,
+    /// How densities are stored; paper is 128 x 128 floats a tile [default: by preset]
+    #[arg(long, value_name = "STORAGE", help_heading = "Bake")]
+    pub storage: Option<Storage>,
+    /// Edge in texels of the smallest tiles that are kept, a power of two; larger where no footprint is smaller
+    #[arg(long, value_name = "TEXELS", default_value = "2", value_parser = tile_edge, help_heading = "Bake")]
+    pub min_tile: u32,
+    /// Compress the pack's sections with Zstandard
+    #[arg(long, help_heading = "Bake")]
+    pub compress: bool,
+
+    /// How the maps are read.
+    #[command(flatten)]
+    pub input: InputFlags,
+
+    /// How a surface is covered: copies side by side, or placed at random
+    #[arg(long, value_name = "KIND", default_value = "tiled", help_heading = "Placement")]
+    pub placement: PlacementArg,
+    /// Transforms of placed copies: rotate=A..B (degrees), mirror, scale=A..B, stretch=A..B, shear=A..B, or none
+    /// [default: none when tiled, rotate=0..360,mirror when stochastic]
+    #[arg(long, value_name = "LIST", value_parser = values::transforms, help_heading = "Placement")]
+    pub transforms: Option<TransformRanges>,
+    /// Different transforms of a stochastic placement, 1 to 32
+    #[arg(long, value_name = "N", default_value = "16", value_parser = clap::value_parser!(u32).range(1..=32))]
+    #[arg(help_heading = "Placement")]
+    pub palette: u32,
+    /// Cells along both axes before a stochastic placement repeats, a power of two from 2 to 1024
+    #[arg(long, value_name = "N", default_value = "32", value_parser = power_of_two, help_heading = "Placement")]
+    pub cells: u32,
+    /// Edge of a cell relative to the map's longer edge, 0.25 to 8
+    #[arg(long, value_name = "EDGES", default_value = "1.0", value_parser = values::positive, help_heading = "Placement")]
+    pub spacing: f64,
+    /// Seed of everything random
+    #[arg(long, value_name = "SEED", default_value = "1", help_heading = "Placement")]
+    pub seed: u64,
+
+    /// Make a two-layer material of two materials of this pack
+    #[arg(long, value_name = "COAT:BASE", help_heading = "Layers")]
+    pub layers: Option<String>,
+    /// Reflectance of the coat at normal incidence
+    #[arg(long, value_name = "F0", default_value = "0.04", value_parser = values::reflectance, help_heading = "Layers")]
+    pub coat_f0: f32,
+    /// Reflectance of the base at normal incidence, linear
+    #[arg(long, value_name = "R,G,B", default_value = "0.5,0.5,0.5", value_parser = values::reflectance3)]
+    #[arg(help_heading = "Layers")]
+    pub base_f0: [f32; 3],
+
+    /// Flags that every bake has.
+    #[command(flatten)]
+    pub run: RunFlags,
+}
+
+fn tile_edge(text: &str) -> Result<u32, String> {
+    let number = text.parse::<u32>().ok().filter(|n| n.is_power_of_two() && (2..=16_384).contains(n));
+    number.ok_or_else(|| "expected a power of two from 2 to 16384".into())
+}
+
+fn power_of_two(text: &str) -> Result<u32, String> {
+    let number = text.parse::<u32>().ok().filter(|n| n.is_power_of_two() && (2..=1024).contains(n));
+    number.ok_or_else(|| "expected a power of two from 2 to 1024".into())
+}
+
+/// Values for several flags at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Preset {
+    /// --max-error 0.05 --storage u8
+    Draft,
+    /// --max-error 0.01 --storage u8
+    Balanced,
+    /// --max-error 0.003 --storage f16
+    Accurate,
+}
+
+/// How densities are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Storage {
+    /// 8 bits of the square root
+    U8,
+    /// half floats
+    F16,
+    /// the paper's layout
+    Paper,
+}
+
+/// How a surface is covered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[allow(missing_docs)] // The flag's help says it.
+pub enum PlacementArg {
+    Tiled,
+    Stochastic,
+}
+
+impl Args {
+    /// Error asked of every tile.
+    pub fn wanted_error(&self) -> f64 {
+        self.max_error.unwrap_or(match self.preset {
+            Preset::Draft => 0.05,
+            Preset::Balanced => 0.01,
+            Preset::Accurate => 0.003,
+        })
+    }
+
+    /// How densities are stored.
+    pub fn wanted_storage(&self) -> DensityStorage {
+        let by_preset = if self.preset == Preset::Accurate { Storage::F16 } else { Storage::U8 };
+        match self.storage.unwrap_or(by_preset) {
+            Storage::U8 => DensityStorage::SqrtU8,
+            Storage::F16 => DensityStorage::F16,
+            Storage::Paper => DensityStorage::PaperF32,
+        }
+    }
+}
