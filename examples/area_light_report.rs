@@ -5,18 +5,20 @@
 
 use glam::{DVec2, Vec2};
 use glint_bake::input::{InputOptions, load_normal_map};
-use glint_bake_core::area_light::baseline::{paper_convolution, paper_meso_alpha};
-use glint_bake_core::area_light::convolve::convolve_alpha;
-use glint_bake_core::area_light::eval::{self, LOBES, Tables, isotropic_radiance, surface_radiance};
-use glint_bake_core::area_light::fetch::{Maps, fetch};
-use glint_bake_core::area_light::material::decode_tables;
-use glint_bake_core::area_light::mips::mip_chain;
+use glint_bake_core::area_light::bake::mip_chain;
+use glint_bake_core::area_light::baked::Tables;
+use glint_bake_core::area_light::baked::decode_tables;
+use glint_bake_core::area_light::eval::{self, LOBES, surface_radiance};
+use glint_bake_core::area_light::paper::{paper_convolution, paper_meso_alpha};
 use glint_bake_core::area_light::quality::*;
+use glint_bake_core::area_light::rect::isotropic_radiance;
 use glint_bake_core::area_light::reference::{Scene, facet_radiance, footprint_normals, footprint_radiance, lift};
-use glint_bake_core::area_light::reference_lobes::{convolved_alpha, deficit};
-use glint_bake_core::area_light::resultant::{alpha_from_deficit, deficit_from_alpha};
-use glint_bake_core::area_light::tables::{LtcTables, fit_tables};
+use glint_bake_core::area_light::reference::{convolved_alpha, deficit};
+use glint_bake_core::area_light::spread::convolve_alpha;
+use glint_bake_core::area_light::spread::{alpha_from_deficit, deficit_from_alpha};
 use glint_bake_core::area_light::{AreaLightOptions, pack};
+use glint_bake_core::area_light::{baked::LtcTables, fit::fit_tables};
+use glint_bake_core::area_light::{baked::Maps, eval::fetch};
 use glint_bake_core::footprint::Footprint;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
@@ -212,7 +214,7 @@ fn checks_of_grid(map: &NormalMap, scenes: &[(Scene, RadianceGrid)]) {
 
 fn distances(name: &str, map: &NormalMap, tables: &Tables, scenes: &[(Scene, RadianceGrid)]) -> Vec<HighlightError> {
     let start = cpu_seconds();
-    let levels = mip_chain(map, 8 << 30, &Silent).unwrap_or_else(|e| panic!("{e}"));
+    let levels = mip_chain(map, &Silent);
     let pack_as = |storage| pack(map, &levels, &AreaLightOptions { storage, anisotropic: true, ..Default::default() });
     let material = pack_as(NormalStorage::F16);
     let seconds = cpu_seconds() - start;

@@ -96,11 +96,12 @@ issue_codes! {
     EnvironmentIndicators = 3034, "environment indicators are no shares of a whole";
     EnvironmentAlbedo = 3035, "environment albedo out of range";
     AreaLightParameters = 3040, "area light parameter out of range";
-    AreaLightShape = 3041, "area light texture differs from parameters";
+    AreaLightShape = 3041, "area light resource differs from parameters";
     AreaLightNormal = 3042, "area light normal out of range";
     AreaLightRoughness = 3043, "area light roughness out of range";
     LtcShape = 3044, "LTC table of wrong format or size";
     LtcValue = 3045, "LTC table value out of range";
+    AreaLightUniform = 3046, "area light uniforms differ from parameters";
     LobesParameters = 3050, "lobe parameter out of range";
     LobesLevels = 3051, "lobe levels inconsistent";
     LobesCount = 3052, "lobe count differs from levels";

@@ -1,6 +1,6 @@
 //! What packs hold that can be shown, on the GPU.
 
-use crate::gpu::{Gpu, GpuError, ResourceSet, Resources};
+use crate::gpu::{Gpu, GpuError, ResourceSet, Resources, bind_pack};
 use crate::methods;
 use crate::render::{Material, Method, Renderer, Shown};
 use crate::scene::Mesh;
@@ -140,14 +140,14 @@ impl Subjects {
 
     fn add_area_lights(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
         for name in area_light::sections::materials(pack) {
-            let baked = area_light::sections::from_pack(pack, name).map_err(bad)?;
+            let params = area_light::sections::params(pack, name).map_err(bad)?;
             let material = Material {
                 alpha: [0.1; 2],
-                texels_per_unit: baked.params.width as f32,
-                lobes: if baked.params.anisotropic { area_light::eval::LOBES } else { 0 },
+                texels_per_unit: params.width as f32,
+                lobes: if params.anisotropic { area_light::eval::LOBES } else { 0 },
                 ..Material::default()
             };
-            let data = Rc::new(methods::area_light::upload(gpu, &baked));
+            let data = Rc::new(bind_pack(gpu, pack, name, glint_formats::area_light::BINDINGS, params.wrap)?);
             self.add(Method::AreaLight, name, &data, material);
             self.add(Method::PlainLtc, name, &data, material);
         }

@@ -8,7 +8,7 @@ use crate::input::{LoadedMap, digest, load_normal_map};
 use crate::pack;
 use crate::progress::Stages;
 use crate::quantities::kib;
-use glint_bake_core::area_light::{self, AreaLightMaterial, mips, sections};
+use glint_bake_core::area_light::{self, AreaLightMaterial, sections};
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_formats::Codec;
@@ -31,8 +31,7 @@ pub fn draft(args: &Args) -> Result<((NormalMap, AreaLightMaterial), u64), Failu
     let name = args.name()?;
     let loaded = load_normal_map(&args.map, &args.input.options(args.run.max_memory))?;
     let digest = digest(&args.map, &loaded)?;
-    let material = area_light::bake(&loaded.map, &options, args.run.max_memory, &Silent)
-        .map_err(|e| Failure::bake(&args.map, &e))?;
+    let material = area_light::bake(&loaded.map, &options, &Silent).map_err(|e| Failure::bake(&args.map, &e))?;
     let codec = if args.compress { Codec::Zstd } else { Codec::None };
     let sections = sections::to_sections(&name, &material, codec);
     let bytes = pack::seal(&args.provenance(&loaded, digest), sections)?.len() as u64;
@@ -53,7 +52,7 @@ fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     }
     let (width, height) = (loaded.map.width, loaded.map.height);
     let bytes = args.map_bytes(width, height);
-    mips::check_memory(&loaded.map, args.run.max_memory).map_err(|e| Failure::bake(&args.map, &e))?;
+    area_light::bake::check(&loaded.map, &options).map_err(|e| Failure::bake(&args.map, &e))?;
     delivery.check_size(bytes, SMALLER)?;
     let line = {
         let skipped = args.skip_mips.min(full_mip_count(width, height) - 1);
@@ -67,8 +66,7 @@ fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     }
     terminal.detail(&format!("{}: {line}, {}", args.map.display(), loaded.convention));
     let stages = Stages::new(terminal);
-    let material = area_light::bake(&loaded.map, &options, args.run.max_memory, &stages)
-        .map_err(|e| Failure::bake(&args.map, &e))?;
+    let material = area_light::bake(&loaded.map, &options, &stages).map_err(|e| Failure::bake(&args.map, &e))?;
     let codec = if args.compress { Codec::Zstd } else { Codec::None };
     let sections = sections::to_sections(&name, &material, codec);
     drop(material);

@@ -2,8 +2,8 @@
 
 use crate::quantities::kib;
 use glam::Vec2;
-use glint_bake_core::area_light::fetch::{Maps, fetch};
 use glint_bake_core::area_light::sections;
+use glint_bake_core::area_light::{baked::Maps, eval::fetch};
 use glint_formats::Pack;
 use glint_formats::Wrap;
 use glint_formats::area_light::{MeasuredError, NormalStorage};

@@ -96,7 +96,7 @@ fn environment_pack() -> Pack {
 
 fn area_light_pack() -> Pack {
     let options = AreaLightOptions { anisotropic: true, ..AreaLightOptions::default() };
-    let baked = area_light::bake(&map(64, 64), &options, 1 << 30, &Silent).unwrap();
+    let baked = area_light::bake(&map(64, 64), &options, &Silent).unwrap();
     pack(area_light::sections::to_sections("waves", &baked, Codec::None))
 }
 
