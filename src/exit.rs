@@ -62,7 +62,20 @@ impl Failure {
 
     /// A bake of `path` that cannot be done.
     pub fn bake(path: &Path, error: &BakeError) -> Failure {
-        Failure::new(exit_of(error), format!("{}: {}", path.display(), by_flags(error)))
+        Failure::new(exit_of(error), format!("{}: {}", path.display(), message_of(error)))
+    }
+}
+
+/// What went wrong. A bad option is called by its name, which is that of its flag.
+fn message_of(error: &BakeError) -> String {
+    let is_name = |text: &str| text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-');
+    match error {
+        BakeError::BadOption(what)
+            if what.split_once(": ").is_some_and(|(name, _)| is_name(name) && !name.starts_with('-')) =>
+        {
+            format!("--{what}")
+        }
+        _ => error.to_string(),
     }
 }
 
@@ -77,21 +90,19 @@ fn exit_of(error: &BakeError) -> Exit {
 impl From<BakeError> for Failure {
     /// A bake that has no input to name.
     fn from(error: BakeError) -> Failure {
-        Failure::new(exit_of(&error), by_flags(&error))
+        Failure::new(exit_of(&error), message_of(&error))
     }
 }
 
-/// What an error says, with flags in place of the options that its message begins with: a bake names its options, as in
-/// `alpha_dict: expected …`, and the flag of an option is called as it is.
-fn by_flags(error: &BakeError) -> String {
-    let text = error.to_string();
-    let is_name = |word: &str| !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'_');
-    match text.split_once(": ") {
-        Some((options, rest)) if !matches!(error, BakeError::BadInput(_)) && options.split(", ").all(is_name) => {
-            let flags: Vec<String> =
-                options.split(", ").map(|option| format!("--{}", option.replace('_', "-"))).collect();
-            format!("{}: {rest}", flags.join(", "))
-        }
-        _ => text,
+#[cfg(feature = "view")]
+impl From<glint_view::gpu::GpuError> for Failure {
+    fn from(error: glint_view::gpu::GpuError) -> Failure {
+        use glint_view::gpu::GpuError;
+        let exit = match error {
+            GpuError::NoAdapter { .. } | GpuError::NoDevice { .. } => Exit::Unsupported,
+            GpuError::Failed(_) => Exit::Unexpected,
+            GpuError::BadPack(_) => Exit::BadInput,
+        };
+        Failure::new(exit, error.to_string())
     }
 }

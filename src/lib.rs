@@ -3,6 +3,7 @@
 pub mod canvas;
 pub mod cli;
 pub mod commands;
+pub mod delivery;
 pub mod exit;
 pub mod info;
 pub mod input;
@@ -10,7 +11,10 @@ pub mod methods;
 pub mod output;
 pub mod pack;
 pub mod plan;
+pub mod plot;
 pub mod preview;
 pub mod progress;
 pub mod project;
 pub mod quantities;
+mod report;
+pub mod scene;

@@ -6,6 +6,8 @@ mod area_light;
 mod bad_input;
 #[path = "cli/bake.rs"]
 mod bake;
+#[path = "cli/bind_pack.rs"]
+mod bind_pack;
 #[path = "cli/build.rs"]
 mod build;
 #[path = "cli/build_real.rs"]

@@ -4,7 +4,7 @@
 mod real_maps;
 
 use glam::DVec2;
-use glint_bake_core::lobes::eval::Frame;
+use glint_bake_core::lobes::eval::frame;
 use glint_bake_core::lobes::options::LobesOptions;
 use glint_bake_core::lobes::quality::{Measured, footprint_errors};
 use glint_bake_core::lobes::query::{Detail, QuerySettings};
@@ -93,7 +93,7 @@ fn levels_of_real_maps_pass_into_each_other_without_a_jump() {
         for step in 0..24 {
             let sigma = 2.0 * 2.0f64.powf(step as f64 / 4.0);
             let place = sweep::footprints(sigma, 1.0, DVec2::splat(128.0), 1, 9);
-            let lod = baked.lod(&Frame::new(&place[0]), &settings);
+            let lod = baked.lod(&frame(&place[0]), &settings);
             let ways = [Measured::Chosen(settings), Measured::At(lod.finer), Measured::At(lod.coarser)];
             let errors = footprint_errors(&reference, &ways.map(|way| (&baked, way)), &place, 6);
             let [mixed, finer, coarser] = [0, 1, 2].map(|k| errors[k].e1.mean);

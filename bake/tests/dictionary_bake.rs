@@ -183,7 +183,7 @@ fn what_cannot_work_is_refused_by_name() {
         (DictionaryOptions { alpha_dict: 0.0, ..default }, "found 0;"),
         (DictionaryOptions { alpha_dict: f64::NAN, ..default }, "found NaN;"),
         (DictionaryOptions { alpha_dict: 1e6, ..default }, "found 1000000;"),
-        (DictionaryOptions { lobe_std: 0.0, ..default }, "lobe_std: expected a slope of 0.00001 or more"),
+        (DictionaryOptions { lobe_std: 0.0, ..default }, "lobe-std: expected a slope of 0.00001 or more"),
         (DictionaryOptions { lobe_std: f64::INFINITY, ..default }, "found inf"),
         (DictionaryOptions { lobe_std: 2.0, ..default }, "below the domain"),
         (DictionaryOptions { lobe_std: 0.5, ..default }, "narrower than the target"),

@@ -3,11 +3,12 @@
 
 use glam::{DVec3, Vec3};
 use glint_bake_core::counting::eval::unit_from_bits;
-use glint_bake_core::environment::eval::environment_radiance;
-use glint_bake_core::environment::glints::{GlintSurface, environment_glints, glint_chances, glint_relative_variance};
+use glint_bake_core::environment::eval::{Surface, chances, environment_glints, environment_mip, environment_smooth};
 use glint_bake_core::environment::image::{direction, luminance};
+use glint_bake_core::environment::lookup::radiance_at;
 use glint_bake_core::environment::options::LevelCount;
-use glint_bake_core::environment::reference_glints::FacetSurface;
+use glint_bake_core::environment::quality::relative_variance;
+use glint_bake_core::environment::reference::FacetSurface;
 use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, albedo, bake};
 use glint_bake_core::progress::Silent;
 use glint_bake_core::rng::{ItemRng, Purpose};
@@ -24,7 +25,7 @@ fn image_of(radiance: impl Fn(DVec3) -> [f32; 3]) -> EnvironmentImage {
             pixels.push(radiance(direction(longitude, sine)));
         }
     }
-    EnvironmentImage::new(2 * HEIGHT, HEIGHT, pixels).unwrap().0
+    EnvironmentImage::new(2 * HEIGHT, HEIGHT, pixels).unwrap()
 }
 
 /// A dim room with a few lamps, a hundred times as bright.
@@ -44,7 +45,7 @@ fn baked(image: &EnvironmentImage, levels: u32, coloured: bool) -> Environment {
         measured_texels: 0,
         ..EnvironmentOptions::default()
     };
-    bake(image, 0, &options, &Silent).unwrap()
+    bake(image, &options, &Silent).unwrap()
 }
 
 /// A surface that an eye sees at `degrees` from its normal.
@@ -55,8 +56,8 @@ fn facets(degrees: f64, alpha: f64) -> FacetSurface {
     FacetSurface { normal, view, alpha, f0: 0.6 }
 }
 
-fn drawn_from(surface: &FacetSurface, facets: f32) -> GlintSurface {
-    GlintSurface {
+fn drawn_from(surface: &FacetSurface, facets: f32) -> Surface {
+    Surface {
         normal: surface.normal.as_vec3(),
         view: surface.view.as_vec3(),
         alpha: surface.alpha as f32,
@@ -117,12 +118,13 @@ fn draws_have_the_mean_and_variance_they_claim() {
     for (levels, count) in [(4, 0.3), (4, 20.0), (8, 7.5), (1, 5.0)] {
         let environment = baked(&image, levels, false);
         let surface = drawn_from(&facets(30.0, 0.3), count);
-        let chances = glint_chances(&environment, &surface);
-        let smooth = brightness(chances.smooth);
+        let chances = chances(&environment, &surface);
+        assert_eq!(chances.smooth_radiance, environment_smooth(&environment, &surface));
+        let smooth = brightness(chances.smooth_radiance);
         let values: Vec<f64> =
             (0..20_000).map(|draw| brightness(environment_glints(&environment, &surface, &words(7, draw)))).collect();
         let [mean, variance, mean_error, variance_error] = statistics(&values);
-        let expected = f64::from(glint_relative_variance(&chances, count)) * smooth * smooth;
+        let expected = f64::from(relative_variance(&chances, count)) * smooth * smooth;
         let (z, z2) = ((mean - smooth) / mean_error, (variance - expected) / variance_error);
         println!("{levels} levels, {count} facets: mean z {z:.1}, variance {variance:.4} z {z2:.1}");
         assert!(z.abs() < 4.0 && z2.abs() < 4.0);
@@ -135,7 +137,7 @@ fn more_facets_converge_to_the_smooth_reflection() {
     let mut last = f64::INFINITY;
     for count in [1e2, 1e4, 1e6, 1e10] {
         let surface = drawn_from(&facets(30.0, 0.3), count);
-        let smooth = brightness(glint_chances(&environment, &surface).smooth);
+        let smooth = brightness(environment_smooth(&environment, &surface));
         let values: Vec<f64> = (0..500)
             .map(|draw| brightness(environment_glints(&environment, &surface, &words(8, draw))) / smooth)
             .collect();
@@ -154,9 +156,9 @@ fn baked_levels_glint_as_placed_facets_do() {
         let exact = facets(degrees, alpha).moments(&image);
         for levels in [4, 8] {
             let environment = baked(&image, levels, false);
-            let chances = glint_chances(&environment, &drawn_from(&facets(degrees, alpha), 10.0));
-            let mean = brightness(chances.smooth) / exact.mean - 1.0;
-            let variance = f64::from(glint_relative_variance(&chances, 10.0)) / exact.relative_variance(10.0) - 1.0;
+            let chances = chances(&environment, &drawn_from(&facets(degrees, alpha), 10.0));
+            let mean = brightness(chances.smooth_radiance) / exact.mean - 1.0;
+            let variance = f64::from(relative_variance(&chances, 10.0)) / exact.relative_variance(10.0) - 1.0;
             println!(
                 "{degrees}°, α {alpha}, {levels} levels: mean off by {mean:.4}, relative variance by {variance:.4}"
             );
@@ -174,8 +176,8 @@ fn red_and_blue_lamps_make_red_and_blue_glints() {
     });
     let environment = baked(&image, 4, true);
     for (towards, bright, dark) in [(Vec3::X, 0, 2), (-Vec3::X, 2, 0)] {
-        let surface = GlintSurface { normal: towards, view: towards, alpha: 0.1, f0: 0.9, facets: 4.0 };
-        assert!(environment_radiance(&environment, towards, 0.1)[bright] > 1.0);
+        let surface = Surface { normal: towards, view: towards, alpha: 0.1, f0: 0.9, facets: 4.0 };
+        assert!(radiance_at(&environment, towards, environment_mip(&environment, 0.1))[bright] > 1.0);
         let sum = (0..200)
             .map(|draw| environment_glints(&environment, &surface, &words(9, draw)))
             .fold([0.0; 3], |a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]]);
@@ -198,7 +200,7 @@ fn hard_surfaces_stay_finite() {
                 for facets in [0.0, 1e-3, 1.0, 1e16] {
                     for cos_o in [0.0, 1e-3, 1.0f32] {
                         let view = Vec3::new((1.0 - cos_o * cos_o).sqrt(), 0.0, cos_o);
-                        let surface = GlintSurface { normal: Vec3::Z, view, alpha, f0: 0.04, facets };
+                        let surface = Surface { normal: Vec3::Z, view, alpha, f0: 0.04, facets };
                         let rgb = environment_glints(&environment, &surface, &words(3, 1));
                         assert!(rgb.iter().all(|v| v.is_finite() && *v >= 0.0), "{rgb:?} for {surface:?}");
                     }

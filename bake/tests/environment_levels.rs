@@ -3,9 +3,12 @@
 use glam::{DVec3, Vec3};
 use glint_bake_core::environment::albedo::{areas, facet_area, reflecting_area_at_normal};
 use glint_bake_core::environment::cube::{face_of, texel_direction, texel_solid_angle_sr};
-use glint_bake_core::environment::eval::*;
+use glint_bake_core::environment::eval::{
+    environment_areas, environment_mip, facet_moments, level_probabilities, std_factor,
+};
 use glint_bake_core::environment::image::{direction, luminance};
 use glint_bake_core::environment::levels::{Seen, fewest, log_uniform, optimal, shares};
+use glint_bake_core::environment::lookup::{colour_at, cube_taps, radiance_at};
 use glint_bake_core::environment::options::LevelCount;
 use glint_bake_core::environment::reference::{filtered, ggx, second_moments};
 use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, bake};
@@ -23,7 +26,7 @@ fn image() -> EnvironmentImage {
         pixels[12 * 64 + x] = [900.0, 20.0, 20.0];
         pixels[12 * 64 + 40 + x] = [20.0, 20.0, 2400.0];
     }
-    EnvironmentImage::new(64, 32, pixels).unwrap().0
+    EnvironmentImage::new(64, 32, pixels).unwrap()
 }
 
 fn baked(image: &EnvironmentImage, levels: u32, coloured: bool) -> Environment {
@@ -35,7 +38,7 @@ fn baked(image: &EnvironmentImage, levels: u32, coloured: bool) -> Environment {
         measured_texels: 0,
         ..EnvironmentOptions::default()
     };
-    bake(image, 0, &options, &Silent).unwrap()
+    bake(image, &options, &Silent).unwrap()
 }
 
 #[test]
@@ -112,19 +115,20 @@ fn stored_levels_have_the_moments_of_the_source() {
         let (face, i, j) = ((k % 6) as usize, k % 4, k / 3);
         let n = texel_direction(face, i, j, size);
         let exact = filtered(&image, Kernel::Ndf, n, alpha);
-        let shares = environment_levels(&environment, n.as_vec3(), alpha as f32);
-        assert!((shares.iter().sum::<f32>() - 1.0).abs() < 1e-6);
-        let visible = 0.8;
-        let p = level_probabilities(&shares, 8, visible);
-        let moments = facet_moments(&environment.params.levels, &p);
+        let (n, visible) = (n.as_vec3(), 0.8);
+        let at = environment_mip(&environment, alpha as f32);
+        let p = level_probabilities(&environment, n, at, visible);
+        assert!((p.iter().sum::<f32>() - 1.0).abs() < 1e-6);
+        let moments = facet_moments(&environment, &p);
         let mean = f64::from(visible) * exact.luminance;
         assert!((f64::from(moments[0]) / mean - 1.0).abs() < 0.01, "{k}: {moments:?} {mean}");
         // Levels vary too much, never too little; matched, they vary as the source does.
         assert!(f64::from(moments[1]) > 0.995 * f64::from(visible) * exact.square, "{k}");
-        let rms = environment_radiance(&environment, n.as_vec3(), alpha as f32)[3];
-        let s = spread_factor(moments, rms * rms, visible);
+        let rms = radiance_at(&environment, n, at)[3];
+        let s = std_factor(moments, rms * rms, visible);
         let variance = f64::from(visible) * exact.square - mean * mean;
-        let matched = f64::from(s * s * relative_variance(moments, 5.0)) * 5.0 * mean * mean;
+        let of_levels = moments[1] - moments[0] * moments[0];
+        let matched = f64::from(s * s * of_levels / (moments[0] * moments[0])) * mean * mean;
         assert!((matched / variance - 1.0).abs() < 0.02, "{k}: {matched} {variance}");
     }
 }
@@ -134,18 +138,19 @@ fn red_and_blue_lamps_make_red_and_blue_levels() {
     let image = image();
     let environment = baked(&image, 4, true);
     let towards = |x: f64| direction(2.0 * PI * (x / 64.0 - 0.5), (PI * (0.5 - 12.5 / 32.0)).sin()).as_vec3();
-    let red = level_colour(&environment, 3, towards(9.5), 0.1);
-    let blue = level_colour(&environment, 3, towards(49.5), 0.1);
+    let sharp = environment_mip(&environment, 0.1);
+    let red = colour_at(&environment, 2, towards(9.5), sharp);
+    let blue = colour_at(&environment, 2, towards(49.5), sharp);
     assert!(red[0] > 10.0 * red[2] && blue[2] > 10.0 * blue[0], "{red:?} {blue:?}");
     // Levels with their colours add up to the filtered colour.
-    let n = texel_direction(1, 2, 1, 4);
-    let alpha = environment.params.roughness[3] as f32;
-    let shares = environment_levels(&environment, n.as_vec3(), alpha);
-    let radiance = environment_radiance(&environment, n.as_vec3(), alpha);
+    let n = texel_direction(1, 2, 1, 4).as_vec3();
+    let at = environment_mip(&environment, environment.params.roughness[3] as f32);
+    let shares = level_probabilities(&environment, n, at, 1.0);
+    let radiance = radiance_at(&environment, n, at);
     for c in 0..3 {
         let sum: f32 = (1..4)
             .map(|k| {
-                let colour = level_colour(&environment, k, n.as_vec3(), alpha);
+                let colour = colour_at(&environment, k - 1, n, at);
                 shares[k] * environment.params.levels[k] as f32 * colour[c]
             })
             .sum();
@@ -165,7 +170,7 @@ fn look_ups_are_smooth_across_edges_and_mips() {
             pixels.push([2.0 + d.x as f32, 2.0 + d.y as f32, 2.0 + d.z as f32]);
         }
     }
-    let image = EnvironmentImage::new(64, 32, pixels).unwrap().0;
+    let image = EnvironmentImage::new(64, 32, pixels).unwrap();
     let environment = baked(&image, 2, false);
     for k in 0..500 {
         let mut rng = ItemRng::new(9, Purpose::Test(4), k);
@@ -175,10 +180,10 @@ fn look_ups_are_smooth_across_edges_and_mips() {
         let near = taps.texels.iter().all(|&(f, i, j)| texel_direction(f, i, j, 8).as_vec3().distance(d) < 0.5);
         assert!(near, "{d} {taps:?}");
         let alpha = (0.02 + 0.1 * rng.unit()) as f32;
-        let found = environment_radiance(&environment, d, alpha);
+        let found = radiance_at(&environment, d, environment_mip(&environment, alpha));
         assert!((Vec3::new(found[0], found[1], found[2]) - (Vec3::splat(2.0) + d)).length() < 0.2, "{d} {found:?}");
     }
-    assert_eq!((mip_of_roughness(0.0, 9), mip_of_roughness(1.0, 9)), (0.0, 8.0));
+    assert_eq!((environment_mip(&environment, 0.0), environment_mip(&environment, 1.0)), (0.0, 5.0));
 }
 
 #[test]
@@ -254,8 +259,7 @@ fn one_level_reflects_the_mean_and_log_uniform_is_eq_18() {
     let environment = baked(&image, 1, false);
     assert_eq!(environment.params.levels, [luminance(image.mean())]);
     assert!(environment.indicators.is_empty());
-    let shares = environment_levels(&environment, Vec3::Y, 0.3);
-    assert_eq!(level_probabilities(&shares, 1, 0.7)[0], 0.7);
+    assert_eq!(level_probabilities(&environment, Vec3::Y, 0.3, 0.7)[0], 0.7);
 
     let levels = log_uniform(&image, 5, 1e-2);
     let top = image.max_luminance();
@@ -271,5 +275,5 @@ fn one_level_reflects_the_mean_and_log_uniform_is_eq_18() {
         measured_texels: 0,
         ..EnvironmentOptions::default()
     };
-    assert_eq!(bake(&image, 0, &options, &Silent).unwrap().params.levels, log_uniform(&image, 4, options.floor));
+    assert_eq!(bake(&image, &options, &Silent).unwrap().params.levels, log_uniform(&image, 4, options.floor));
 }

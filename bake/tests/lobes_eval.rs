@@ -2,18 +2,17 @@
 
 use glam::{DVec2, Vec2};
 use glint_bake_core::footprint::Footprint;
-use glint_bake_core::lobes::eval::Frame;
+use glint_bake_core::lobes::eval::frame;
 use glint_bake_core::lobes::options::{LobesOptions, NormalsChoice};
-use glint_bake_core::lobes::quality::{Measured, difference, footprint_errors};
-use glint_bake_core::lobes::query::{Detail, Gathered, Lod, QuerySettings};
-use glint_bake_core::lobes::reference::Reference;
-use glint_bake_core::lobes::reference_lobes::sum_of_boxes;
+use glint_bake_core::lobes::quality::{Gathered, Measured, difference, footprint_errors};
+use glint_bake_core::lobes::query::{Detail, Lod, QuerySettings};
+use glint_bake_core::lobes::reference::{Reference, sum_of_boxes};
 use glint_bake_core::lobes::{BakedLobes, bake};
-use glint_bake_core::ndf_maps::bake::{NdfMapsOptions, bake as bake_ndf_maps};
-use glint_bake_core::ndf_maps::eval::Material;
-use glint_bake_core::ndf_maps::placement::{self, PlacementOptions};
+use glint_bake_core::ndf_maps::bake::bake_maps as bake_ndf_maps;
+use glint_bake_core::ndf_maps::baked::Material;
+use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, TransformRanges};
+use glint_bake_core::ndf_maps::placement::place;
 use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
-use glint_bake_core::ndf_maps::transform::TransformRanges;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::quality::metrics::{DiskGrid, e1};
@@ -65,7 +64,7 @@ fn the_reference_is_that_of_ndf_maps() {
     let options = NdfMapsOptions { roughness: ROUGHNESS, max_error: 1.0, ..NdfMapsOptions::default() };
     let material = Material {
         maps: bake_ndf_maps(&map, &options, &Silent).unwrap(),
-        placement: placement::bake(&map, ROUGHNESS, &PlacementOptions::Tiled(TransformRanges::default())).unwrap(),
+        placement: place(&map, ROUGHNESS, &PlacementOptions::Tiled(TransformRanges::default())).unwrap(),
     };
     let other = SurfaceReference::new(&map, &material);
     let reference = Reference::new(&map, Filter::Linear, ROUGHNESS);
@@ -124,7 +123,7 @@ fn every_reduction_keeps_its_place_and_packing_costs_nothing_that_shows() {
 fn levels_by_edge_are_those_of_cells_as_wide_and_between_them_mixtures() {
     let map = waves(64);
     let baked = bake(&map, &options(), &Silent).unwrap();
-    let frame = Frame::new(&Footprint::new(DVec2::ZERO, 2.0, 1.0, 0.0));
+    let axes = frame(&Footprint::new(DVec2::ZERO, 2.0, 1.0, 0.0));
     // Stored levels have cells of 8 and 16 texels; σ = 2 reads boxes of half a texel.
     for (lambda, finer, coarser, fraction) in [
         (2.0, Detail::Boxes(0.5), Detail::Boxes(0.5), 0.0),
@@ -133,7 +132,7 @@ fn levels_by_edge_are_those_of_cells_as_wide_and_between_them_mixtures() {
         (3.25, Detail::Cells(0), Detail::Cells(1), 0.25),
         (9.5, Detail::Cells(1), Detail::Cells(1), 0.5),
     ] {
-        assert_eq!(baked.lod_of_edge(&frame, lambda), Lod { finer, coarser, fraction }, "{lambda}");
+        assert_eq!(baked.lod_of_edge(&axes, lambda), Lod { finer, coarser, fraction }, "{lambda}");
     }
     let reference = Reference::new(&map, Filter::Linear, ROUGHNESS);
     let error = |measured| mean_error(&reference, &baked, measured, 4.0);
@@ -158,7 +157,7 @@ fn levels_pass_into_each_other_without_a_jump() {
         if count % 20 == 0 {
             let exact = reference.ndf(&footprint, 6);
             let error = |seen: &Gathered| difference(&exact, seen).0;
-            let lod = baked.lod(&Frame::new(&footprint), &settings);
+            let lod = baked.lod(&frame(&footprint), &settings);
             let [finer, coarser] = [lod.finer, lod.coarser]
                 .map(|detail| error(&baked.gather_detail(&footprint, detail, ROUGHNESS as f32, settings.reach)));
             let mixed = error(&seen);

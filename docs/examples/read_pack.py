@@ -58,15 +58,15 @@ PARAMETERS = {
         width="u32", height="u32", wrap=WRAP, filter=("enum", ["Linear", "Nearest"]), intrinsic_roughness="f32",
         storage=("enum", ["Packed", "Half"]), normals=("enum", ["Snorm16", "Unorm8"]),
         merge=("enum", ["KMeans", "Moments", "Runnalls"]), seeds="u32", lobes_per_cell="u32", step_texels="u32",
-        normal_low=PAIR, normal_extent=PAIR, levels=("list", LOBES), measured_roughness="f32",
-        measured=("list", dict(sigma_texels="f32", mean="f32", worst="f32"))),
+        normal_low=PAIR, normal_extent=PAIR, levels=("list", LOBES), rim_roughness="f32",
+        measured_roughness="f32", measured=("list", dict(sigma_texels="f32", mean="f32", worst="f32"))),
     "SYPP": dict(
         sample_width="u32", sample_height="u32", wrap=WRAP, patch="u32", overlap="u32", alignment="u32", alpha="f32",
         error_tolerance="f32", seed="u64", layout=("enum", [("Patches", GRID), ("CornerTiles", TILES)]),
         measured=dict(seam_ratio="f64", distinct_offsets="u32")),
 }
 KINDS = set(PARAMETERS) | set(
-    "NMTI NMDE NMNO PLPL PLNO PLCL SDUB SDTB ENRA ENIN ENCO ENAL ALUB ALNM ALRO ALLI ALLT LOBE LONM SYPO SYSE".split())
+    "NMTI NMDE NMNO PLPL PLNO PLCL SDUB SDTB ENRA ENIN ENCO ENAL ALUB ALNM ALRO ALLI ALLT LOUB LOBE LONM SYPO SYSE".split())
 TEXEL_BYTES = {9: 1, 10: 1, 13: 1, 16: 2, 17: 2, 37: 4, 38: 4, 41: 4, 70: 2, 71: 2, 74: 2, 76: 2, 77: 4, 78: 4, 81: 4,
                83: 4, 91: 8, 92: 8, 95: 8, 97: 8, 98: 4, 100: 4, 101: 8, 103: 8, 107: 16, 109: 16, 122: 4, 123: 4}
 

@@ -47,3 +47,5 @@ pub const BUFFER_GRANULARITY: usize = 16;
 /// Columns of a table that is stored as a texture of one or four 32-bit numbers: element i is at column i mod 1024 of row
 /// i / 1024, and the last row ends with zeros.
 pub const TABLE_WIDTH: u32 = 1024;
+/// Bytes of a storage buffer that every GPU binds, at most.
+pub const MAX_BINDING_BYTES: u64 = 128 << 20;

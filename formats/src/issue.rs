@@ -109,11 +109,14 @@ issue_codes! {
     LobeCellEmpty = 3054, "cell without lobes";
     LobesNormalsShape = 3055, "lobe normals differ from parameters";
     LobesNormal = 3056, "lobe normal out of range";
+    LobesNormalPair = 3057, "lobe normal pair inconsistent";
+    LobesUniform = 3058, "lobe uniform differs from parameters";
     SynthesisParameters = 3060, "synthesis parameter out of range";
     SynthesisShape = 3061, "synthesis buffer differs from parameters";
     SynthesisOffset = 3062, "synthesis patch outside sample";
     SynthesisSeam = 3063, "synthesis seam path broken";
     SurfaceMismatch = 3064, "lobes and synthesis of a surface do not fit";
+    SynthesisPadding = 3065, "synthesis buffer does not end with zeros";
 }
 
 impl fmt::Display for IssueCode {

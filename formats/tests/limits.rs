@@ -12,12 +12,12 @@ fn first_code(bytes: &[u8], limits: Limits) -> Option<IssueCode> {
 fn each_limit_is_kept() {
     let bytes = full_pack();
     let len = bytes.len() as u64;
-    let full = Pack::from_bytes(bytes.clone(), &Limits::default()).unwrap();
-    let (sections, raw) = (full.sections().len() as u32, full.sections().iter().map(|s| s.raw_len).sum());
-    let exact = Limits { max_file_bytes: len, max_sections: sections, max_raw_bytes: raw };
+    let pack = Pack::from_bytes(bytes.clone(), &Limits::default()).unwrap();
+    let (count, raw) = (pack.sections().len() as u32, pack.sections().iter().map(|s| s.raw_len).sum());
+    let exact = Limits { max_file_bytes: len, max_sections: count, max_raw_bytes: raw };
     assert_eq!(first_code(&bytes, exact), None);
     assert_eq!(first_code(&bytes, Limits { max_file_bytes: len - 1, ..exact }), Some(IssueCode::FileTooLarge));
-    assert_eq!(first_code(&bytes, Limits { max_sections: sections - 1, ..exact }), Some(IssueCode::TooManySections));
+    assert_eq!(first_code(&bytes, Limits { max_sections: count - 1, ..exact }), Some(IssueCode::TooManySections));
     assert_eq!(first_code(&bytes, Limits { max_raw_bytes: raw - 1, ..exact }), Some(IssueCode::RawTooLarge));
 }
 

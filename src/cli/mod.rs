@@ -2,6 +2,7 @@
 
 mod common;
 pub mod normal_maps;
+mod option_list;
 mod response;
 mod run_flags;
 mod terminal;
@@ -9,6 +10,7 @@ mod threads;
 pub mod values;
 
 pub use common::{Colour, Common, ProgressWhen};
+pub use option_list::{OptionList, typed};
 pub use run_flags::RunFlags;
 pub use terminal::{Terminal, bars};
 pub use threads::on_threads;

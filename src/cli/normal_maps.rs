@@ -1,6 +1,7 @@
 //! What subcommands that bake normal maps share: flags of how maps are read, names of materials, digests of inputs.
 
-use crate::cli::values;
+use super::option_list::OptionList;
+use super::values;
 use crate::exit::Failure;
 use crate::input::{Channels, Crop, InputOptions};
 use clap::ValueEnum;
@@ -97,30 +98,28 @@ impl InputFlags {
         }
     }
 
-    /// Names and values for provenance; those that say how a particular map is read only where they were given.
-    pub fn provenance(&self) -> Vec<(&'static str, String)> {
-        let mut options =
-            vec![("normal-y", lower(&self.normal_y)), ("wrap", lower(&self.wrap)), ("channels", lower(&self.channels))];
-        if let Some(c) = self.crop {
-            options.push(("crop", format!("{}x{}+{}+{}", c.w, c.h, c.x, c.y)));
+    /// Options for provenance; those that say how a particular map is read only where they were given.
+    pub fn option_list(&self) -> OptionList {
+        let mut options = OptionList::default();
+        options.push_choice("normal-y", &self.normal_y);
+        options.push_choice("wrap", &self.wrap);
+        options.push_choice("channels", &self.channels);
+        if let Some(crop) = self.crop {
+            options.push("crop", values::crop_text(crop));
         }
         if let Some(scale) = self.height {
-            options.push(("height", scale.to_string()));
+            options.push("height", scale);
         }
         if self.assume_linear {
-            options.push(("assume-linear", "true".into()));
+            options.push("assume-linear", true);
         }
         options
     }
 
     /// Which way green points, for provenance.
     pub fn normal_convention(&self) -> String {
-        format!("y-{}", lower(&self.normal_y))
+        format!("y-{}", values::name_of(&self.normal_y))
     }
-}
-
-fn lower(value: &dyn std::fmt::Debug) -> String {
-    format!("{value:?}").to_ascii_lowercase()
 }
 
 /// Whether a material can have this name.

@@ -1,7 +1,13 @@
-//! Values that flags take: crops, sizes, colours, byte counts, ranges of transforms.
+//! Values that flags take, and how they are typed: crops, sizes, colours, byte counts, ranges of transforms.
 
 use crate::input::Crop;
-use glint_bake_core::ndf_maps::transform::TransformRanges;
+use clap::ValueEnum;
+use glint_bake_core::ndf_maps::options::TransformRanges;
+
+/// The name of a value, as a flag takes it.
+pub fn name_of(value: &impl ValueEnum) -> String {
+    value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+}
 
 /// `WxH+X+Y`, as ImageMagick writes it.
 pub fn crop(text: &str) -> Result<Crop, String> {
@@ -36,6 +42,19 @@ pub fn surface_size(text: &str) -> Result<SurfaceSize, String> {
     }
     let size = pair(text).filter(|&(w, h)| w > 0 && h > 0).map(|(w, h)| SurfaceSize::Texels(w, h));
     size.ok_or_else(|| "expected WxH texels, as in 4096x4096, or unbounded".into())
+}
+
+/// A crop as it is typed.
+pub fn crop_text(crop: Crop) -> String {
+    format!("{}x{}+{}+{}", crop.w, crop.h, crop.x, crop.y)
+}
+
+/// A surface's size as it is typed.
+pub fn surface_size_text(size: SurfaceSize) -> String {
+    match size {
+        SurfaceSize::Texels(width, height) => format!("{width}x{height}"),
+        SurfaceSize::Unbounded => "unbounded".to_owned(),
+    }
 }
 
 fn pair(text: &str) -> Option<(u32, u32)> {
@@ -128,6 +147,26 @@ pub fn transforms(text: &str) -> Result<TransformRanges, String> {
         }
     }
     Ok(ranges)
+}
+
+/// Ranges as the flag takes them.
+pub fn transforms_text(ranges: &TransformRanges) -> String {
+    let mut parts = Vec::new();
+    let mut add = |name: &str, (low, high): (f64, f64), neutral: f64| {
+        if low != high {
+            parts.push(format!("{name}={low}..{high}"));
+        } else if low != neutral {
+            parts.push(format!("{name}={low}"));
+        }
+    };
+    add("rotate", ranges.rotate_degrees, 0.0);
+    add("scale", ranges.scale, 1.0);
+    add("stretch", ranges.stretch, 1.0);
+    add("shear", ranges.shear, 0.0);
+    if ranges.mirror {
+        parts.push("mirror".into());
+    }
+    if parts.is_empty() { "none".into() } else { parts.join(",") }
 }
 
 fn range(part: &str, value: &str) -> Result<(f64, f64), String> {

@@ -1,96 +1,50 @@
-//! The last steps of every bake: the finished pack, its report and its dependency file reach their places.
+//! The frame of every bake: the finished pack, its report and its dependency file reach their places.
 
-use crate::cli::{RunFlags, Terminal};
+use crate::cli::{Terminal, on_threads};
+use crate::delivery::Delivery;
 use crate::exit::{Exit, Failure};
 use crate::info::Report;
+use crate::methods::bake::{Bake, FinishedPack};
+use crate::methods::contents::Item;
 use crate::output;
 use crate::quantities::kib;
 use glint_formats::WriteOutcome;
-use std::path::{Path, PathBuf};
 
-/// Where a bake writes and what it depends on.
-pub struct Delivery<'a> {
-    /// The pack.
-    pub output: &'a Path,
-    /// Files the pack depends on.
-    pub inputs: &'a [PathBuf],
-    /// What is written beside the pack.
-    pub run: &'a RunFlags,
+/// Bakes on the threads that were asked for, and writes the pack.
+pub fn run(bake: &dyn Bake, terminal: Terminal) -> Result<(), Failure> {
+    let delivery = bake.delivery();
+    on_threads(delivery.run.threads, || match bake.bake(terminal)? {
+        Some(pack) => write(&delivery, pack, terminal),
+        None => Ok(()),
+    })?
 }
 
-impl Delivery<'_> {
-    /// Says whether all inputs can be read and all outputs written, before any work.
-    pub fn check(&self) -> Result<(), Failure> {
-        let outputs: Vec<&Path> = [Some(self.output), self.run.report.as_deref(), self.run.depfile.as_deref()]
-            .into_iter()
-            .flatten()
-            .collect();
-        output::check_distinct(&outputs, &self.inputs())?;
-        for path in self.inputs {
-            std::fs::File::open(path).map_err(|e| Failure::io(path, "cannot be read", &e))?;
-        }
-        outputs.iter().try_for_each(|path| output::check_writable(path))
+/// Writes the pack and what goes with it, and says so. The pack comes last: a build tool that finds it finds the rest.
+fn write(delivery: &Delivery<'_>, pack: FinishedPack, terminal: Terminal) -> Result<(), Failure> {
+    delivery.check_size(pack.bytes.len() as u64, pack.smaller)?;
+    let report = Report::of_bytes(delivery.output, pack.bytes);
+    let Some(pack) = report.pack() else {
+        let message = format!("the pack cannot be read back: {}; please report this", report.to_json());
+        return Err(Failure::new(Exit::Unexpected, message));
+    };
+    if let Some(path) = &delivery.run.report {
+        output::write(path, report.to_json().as_bytes())?;
     }
-
-    /// Refuses a pack above the limit. `smaller` says what makes it smaller.
-    pub fn check_size(&self, found: u64, smaller: &str) -> Result<(), Failure> {
-        let limit = self.run.max_memory;
-        if found <= limit {
-            return Ok(());
-        }
-        let message = format!("the pack has {found} bytes, the limit is {limit}; raise --max-memory or {smaller}");
-        Err(Failure::new(Exit::LimitExceeded, message))
+    if let Some(path) = &delivery.run.depfile {
+        output::write(path, output::depfile(delivery.output, &delivery.inputs()).as_bytes())?;
     }
-
-    /// Writes the pack and what goes with it, and says so. The pack comes last: a build tool that finds it finds the
-    /// rest.
-    pub fn write(&self, bytes: Vec<u8>, smaller: &str, terminal: Terminal) -> Result<(), Failure> {
-        self.check_size(bytes.len() as u64, smaller)?;
-        let report = Report::of_bytes(self.output, bytes);
-        let Some(pack) = report.pack() else {
-            let message = format!("the pack cannot be read back: {}; please report this", report.to_json());
-            return Err(Failure::new(Exit::Unexpected, message));
-        };
-        if let Some(path) = &self.run.report {
-            output::write(path, report.to_json().as_bytes())?;
-        }
-        if let Some(path) = &self.run.depfile {
-            output::write(path, output::depfile(self.output, &self.inputs()).as_bytes())?;
-        }
-        let outcome = output::write(self.output, pack.file_bytes())?;
-        terminal.say(&summary(&report, outcome));
-        if self.run.json {
-            output::print(&report.to_json())?;
-        }
-        Ok(())
+    let outcome = output::write(delivery.output, pack.file_bytes())?;
+    terminal.say(&summary(&report, outcome));
+    if delivery.run.json {
+        output::print(&report.to_json())?;
     }
-
-    fn inputs(&self) -> Vec<&Path> {
-        self.inputs.iter().map(PathBuf::as_path).collect()
-    }
+    Ok(())
 }
 
 /// The pack that was written.
 fn summary(report: &Report, outcome: WriteOutcome) -> String {
-    let mut lines = Vec::new();
-    for material in &report.materials {
-        lines.push(format!("{}: {}", material.name, material.accuracy_line()));
-    }
-    for dictionary in &report.dictionaries {
-        lines.push(format!("{}: {}", dictionary.name, dictionary.accuracy_line()));
-    }
-    for environment in &report.environments {
-        lines.push(format!("{}: {}", environment.name, environment.accuracy_line()));
-    }
-    for material in &report.area_lights {
-        lines.push(format!("{}: {}", material.name, material.accuracy_line()));
-    }
-    for map in &report.lobes {
-        lines.push(format!("{}: {}", map.name, map.accuracy_line()));
-    }
-    for surface in &report.surfaces {
-        lines.push(format!("{}: {}", surface.name, surface.accuracy_line()));
-    }
+    let line = |item: &dyn Item| item.accuracy_line().map(|line| format!("{}: {line}", item.name()));
+    let mut lines: Vec<String> = report.contents.items().filter_map(line).collect();
     let outcome = match outcome {
         WriteOutcome::Written => "written",
         WriteOutcome::Unchanged => "unchanged",

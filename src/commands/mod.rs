@@ -1,10 +1,11 @@
 //! One file (or folder) a subcommand: its flags and what it does.
 
-pub mod bake;
+mod bake;
 mod build;
 
 mod demo;
 mod export;
+pub mod flag_tables;
 mod generate;
 mod info;
 mod ninja;
@@ -16,7 +17,7 @@ mod view;
 
 use crate::cli::{Common, LONG_VERSION, Terminal};
 use crate::exit::{Failure, HELP};
-use crate::methods::Method;
+use crate::methods::MethodCommand;
 use clap::{CommandFactory, Parser, Subcommand};
 
 /// Lines that `glint-bake --help` shows and a test runs.
@@ -49,7 +50,7 @@ pub struct Bake {
 #[derive(Subcommand, Debug)]
 enum Command {
     #[command(flatten)]
-    Method(Method),
+    Method(MethodCommand),
     Build(build::Args),
     Ninja(ninja::Args),
     Plan(plan::Args),
@@ -65,13 +66,13 @@ enum Command {
 pub fn bake(cli: Bake) -> Result<(), Failure> {
     let terminal = Terminal::new(&cli.common);
     match cli.command {
-        Command::Method(method) => method.run(terminal),
+        Command::Method(MethodCommand(method)) => bake::run(method.as_ref(), terminal),
         Command::Build(args) => build::run(&args, terminal),
         Command::Ninja(args) => ninja::run(&args, terminal),
         Command::Plan(args) => plan::run(&args, terminal),
         Command::Preview(args) => preview::run(&args, terminal),
         Command::Export(args) => export::run(&args, terminal),
-        Command::Generate(args) => generate::run(&args, terminal),
+        Command::Generate(args) => generate::run(&args, programs(), terminal),
         Command::Shaders(args) => shaders::run(&args, terminal),
         Command::Report(args) => report::run(&args, terminal),
         Command::Demo(args) => demo::run(&args, terminal),

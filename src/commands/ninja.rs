@@ -3,7 +3,7 @@
 use crate::cli::Terminal;
 use crate::exit::Failure;
 use crate::output;
-use crate::project::{Project, ninja, settled};
+use crate::project::{self, ninja, settled};
 use std::path::{Path, PathBuf};
 
 /// Lines that the help shows and a test runs.
@@ -31,7 +31,7 @@ pub struct Args {
 
 /// Runs the subcommand.
 pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
-    let mut project = Project::load(&args.project)?;
+    let mut project = project::load(&args.project)?;
     settled::settle(&mut project, true, terminal)?;
     let Some(path) = &args.output else {
         return output::print(&ninja::manifest(&project, &args.program, Path::new("build.ninja")));

@@ -3,8 +3,7 @@
 use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
 use crate::output;
-use crate::plan;
-use crate::project::{Project, settled};
+use crate::project::{self, Project, settled};
 use crate::quantities::{kib, percent};
 use std::path::PathBuf;
 
@@ -25,6 +24,8 @@ pub struct Args {
     #[arg(value_name = "PROJECT", default_value = "glint.toml")]
     pub project: PathBuf,
     /// Measure the packs that were built for the scene, at other places than the plan was made at
+    ///
+    /// The exit code is 4 when one exceeds its error.
     #[arg(long)]
     pub measure: bool,
     /// Threads to use; the plan is the same for any number [default: one a core]
@@ -35,11 +36,11 @@ pub struct Args {
 
 /// Runs the subcommand.
 pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
-    let project = Project::load(&args.project)?;
+    let project = project::load(&args.project)?;
     if args.measure {
         return crate::cli::on_threads(args.threads, || measure(project, terminal))?;
     }
-    let plan = crate::cli::on_threads(args.threads, || plan::plan(&project, terminal))??;
+    let plan = crate::cli::on_threads(args.threads, || settled::plan(&project, terminal))??;
     if let Some(scene) = &project.scene {
         output::print(&plan.to_text(scene))?;
     }
@@ -53,14 +54,14 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
 /// Says how good the packs are; a failure when one is not good enough.
 fn measure(mut project: Project, terminal: Terminal) -> Result<(), Failure> {
     settled::settle(&mut project, false, terminal)?;
-    let all = plan::measure(&project)?;
+    let all = settled::measure(&project)?;
     let mut text = String::new();
-    for pack in &all {
+    for (name, pack) in &all {
         let (error, budget) = (percent(pack.error), percent(pack.budget));
-        text += &format!("{}: {} {error} of {budget}, {}\n", pack.name, pack.measure, kib(pack.bytes));
+        text += &format!("{name}: {} {error} of {budget}, {}\n", pack.measure, kib(pack.bytes));
     }
     output::print(&text)?;
-    match all.iter().filter(|pack| pack.error > pack.budget).count() {
+    match all.iter().filter(|(_, pack)| pack.error > pack.budget).count() {
         0 => Ok(()),
         count => Err(Failure::new(Exit::BadInput, format!("{count} of {} packs exceed their error", all.len()))),
     }

@@ -3,11 +3,12 @@
 use crate::cli::{Terminal, values};
 use crate::exit::{Exit, Failure};
 use crate::info::Report;
+use crate::methods::ndf_maps::info::LayersInfo;
 use crate::output;
 use crate::preview::{Camera, Layer, Object, Scene, Shape, Surface, render};
 use clap::ValueEnum;
 use glam::Vec3;
-use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::sections;
 use glint_formats::Limits;
 use glint_formats::ndf_maps::LayeredMaterial;
@@ -106,12 +107,8 @@ impl Look {
             }
             return Ok(Look { base: load(name)?, coat: None, layers: None });
         }
-        if let Some(layers) = report.layers.first() {
-            return Ok(Look {
-                base: load(&layers.base)?,
-                coat: Some(load(&layers.coat)?),
-                layers: Some(layers.clone()),
-            });
+        if let Some(LayersInfo(layers)) = LayersInfo::all_of(pack).into_iter().next() {
+            return Ok(Look { base: load(&layers.base)?, coat: Some(load(&layers.coat)?), layers: Some(layers) });
         }
         let Some(first) = names.first() else {
             let message = format!("{}: expected a material to show, found none in the pack", args.pack.display());

@@ -18,8 +18,6 @@ use std::path::Path;
 pub struct LoadedEnvironment {
     /// The validated image.
     pub image: EnvironmentImage,
-    /// Pixels with a negative channel, which was taken as 0.
-    pub negative_pixels: u64,
     /// Digest of the bytes that were read.
     pub digest: InputDigest,
     /// What the user should know, one sentence each.
@@ -45,14 +43,14 @@ pub fn load_environment(path: &Path, max_memory: u64) -> Result<LoadedEnvironmen
             "expected linear radiance as Radiance HDR or OpenEXR; images of other formats have no range for lights",
         ));
     };
-    let (image, report) = EnvironmentImage::new(width, height, pixels).map_err(|e| from_bake(path, e))?;
-    if let Some((x, y)) = report.first_negative {
-        let count = report.negative_pixels;
+    let image = EnvironmentImage::new(width, height, pixels).map_err(|e| from_bake(path, e))?;
+    if let Some((x, y)) = image.report.first_negative {
+        let count = image.report.negative_pixels;
         warnings.push(format!("{count} pixels are negative, the first of them ({x}, {y}); taken as 0"));
     }
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let digest = InputDigest::of(&name, &bytes);
-    Ok(LoadedEnvironment { image, negative_pixels: report.negative_pixels, digest, warnings })
+    Ok(LoadedEnvironment { image, digest, warnings })
 }
 
 fn decode_hdr(

@@ -1,69 +1,73 @@
 //! The methods that bake a pack: subcommands of glint-bake, and what a material of a project may name as its method.
 //!
-//! A new method is one variant here; projects, their options and ninja edges follow from its flags.
+//! A new method is a folder here and a row in [`ALL`]; projects, plans, glint-info and plots follow from what it answers
+//! to [`method::Method`].
 
-pub mod area_light;
-pub mod dictionary;
-pub mod environment;
-pub mod lobes;
+mod area_light;
+pub mod bake;
+pub mod contents;
+mod dictionary;
+mod environment;
+mod lobes;
+pub mod method;
 pub mod ndf_maps;
+pub mod planning;
+pub mod plots;
 
-use crate::cli::Terminal;
-use crate::exit::Failure;
-use clap::Subcommand;
-use glint_bake_core::area_light::AreaLightMaterial;
-use glint_bake_core::environment::{Environment, EnvironmentImage};
-use glint_bake_core::ndf_maps::eval::Material;
-use glint_bake_core::normal_map::NormalMap;
+use bake::Bake;
+use clap::error::ErrorKind;
+use clap::{ArgMatches, Command, FromArgMatches, Subcommand};
+use contents::{Contents, Field, ParameterKind};
+use glint_formats::{FourCc, Pack};
+use method::Method;
+use std::sync::Arc;
 
-/// A bake with its flags.
-#[derive(Subcommand, Clone, Debug)]
-#[allow(missing_docs)] // The help of the flags says it.
-pub enum Method {
-    NdfMaps(Box<ndf_maps::Args>),
-    Lobes(Box<lobes::Args>),
-    Dictionary(dictionary::Args),
-    Environment(environment::Args),
-    AreaLight(Box<area_light::Args>),
+/// Every method, in the order that help and reports have.
+pub static ALL: [&dyn Method; 5] =
+    [&ndf_maps::NdfMaps, &dictionary::Dictionary, &environment::Environment, &area_light::AreaLight, &lobes::Lobes];
+
+/// The method of a name.
+pub fn find(name: &str) -> Option<&'static dyn Method> {
+    ALL.into_iter().find(|method| method.name() == name)
 }
 
-impl Method {
-    /// Bakes the pack.
-    pub fn run(self, terminal: Terminal) -> Result<(), Failure> {
-        match self {
-            Method::NdfMaps(args) => ndf_maps::bake::run(*args, terminal),
-            Method::Lobes(args) => lobes::bake::run(*args, terminal),
-            Method::Dictionary(args) => dictionary::bake::run(&args, terminal),
-            Method::Environment(args) => environment::bake::run(&args, terminal),
-            Method::AreaLight(args) => area_light::bake::run(*args, terminal),
-        }
+/// What a pack holds of all methods; without a pack every field is empty.
+pub fn describe(pack: Option<&Pack>) -> Contents {
+    Contents(ALL.iter().flat_map(|method| method.describe(pack)).collect::<Vec<Field>>())
+}
+
+/// How sections of a kind are read as parameters, when they are known.
+pub fn parameter_kind(kind: FourCc) -> Option<&'static ParameterKind> {
+    ALL.iter().flat_map(|method| method.parameters()).find(|known| known.kind == kind)
+}
+
+/// The bake that a subcommand stands for.
+#[derive(Clone, Debug)]
+pub struct MethodCommand(pub Arc<dyn Bake>);
+
+impl FromArgMatches for MethodCommand {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<MethodCommand, clap::Error> {
+        let found = matches.subcommand().and_then(|(name, flags)| Some((find(name)?, flags)));
+        let (method, flags) = found.ok_or_else(|| clap::Error::new(ErrorKind::MissingSubcommand))?;
+        method.parse(flags).map(MethodCommand)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = MethodCommand::from_arg_matches(matches)?;
+        Ok(())
     }
 }
 
-/// What a bake would put into its pack, and what it was made from.
-pub enum Draft {
-    /// Materials of NDF maps.
-    NdfMaps(Vec<(NormalMap, Material)>),
-    /// A material for rectangle lights.
-    AreaLight(Box<(NormalMap, AreaLightMaterial)>),
-    /// An environment.
-    Environment(Box<(EnvironmentImage, Environment)>),
-    /// Of a method that scenes do not plan.
-    Unplanned,
-}
+impl Subcommand for MethodCommand {
+    fn augment_subcommands(command: Command) -> Command {
+        ALL.iter().fold(command, |command, method| command.subcommand(method.command()))
+    }
 
-impl Method {
-    /// Bakes without writing: the draft and the bytes of its pack.
-    pub fn draft(self) -> Result<(Draft, u64), Failure> {
-        match self {
-            Method::NdfMaps(args) => ndf_maps::bake::draft(*args).map(|(made, bytes)| (Draft::NdfMaps(made), bytes)),
-            Method::AreaLight(args) => {
-                area_light::bake::draft(&args).map(|(made, bytes)| (Draft::AreaLight(Box::new(made)), bytes))
-            }
-            Method::Environment(args) => {
-                environment::bake::draft(&args).map(|(made, bytes)| (Draft::Environment(Box::new(made)), bytes))
-            }
-            Method::Lobes(_) | Method::Dictionary(_) => Ok((Draft::Unplanned, 0)),
-        }
+    fn augment_subcommands_for_update(command: Command) -> Command {
+        MethodCommand::augment_subcommands(command)
+    }
+
+    fn has_subcommand(name: &str) -> bool {
+        find(name).is_some()
     }
 }

@@ -1,9 +1,28 @@
 //! The choice between drafts: of every pack the smallest within its error; within the bytes of all, the nearest to that.
 
-use super::{Candidates, Point};
+use crate::methods::bake::Candidate;
+use crate::methods::planning::USED;
 
-/// Part of an error that a plan uses up: it is measured at some places, and holds for others.
-pub const USED: f64 = 0.9;
+/// A pack to plan, with what was measured of its drafts.
+#[derive(Clone, Debug)]
+pub struct PackDrafts {
+    /// Name of the pack.
+    pub name: String,
+    /// Method.
+    pub method: &'static str,
+    /// Number of the table among those that are planned, and of the alternative among the table's.
+    pub from: (usize, usize),
+    /// Error that it may have.
+    pub budget: f64,
+    /// Name of that error.
+    pub measure: &'static str,
+    /// How it is seen.
+    pub view: String,
+    /// What no look-up of the scene reads, and so is left out.
+    pub dropped: Vec<String>,
+    /// Drafts that no other one beats in bytes and error, the smallest first. Never empty.
+    pub drafts: Vec<Candidate>,
+}
 
 /// What is baked for a scene.
 #[derive(Clone, Debug)]
@@ -20,32 +39,32 @@ pub struct Plan {
 #[derive(Clone, Debug)]
 pub struct Chosen {
     /// The pack with all drafts.
-    pub candidates: Candidates,
+    pub pack: PackDrafts,
     /// The one that was chosen.
     pub at: usize,
 }
 
 impl Chosen {
     /// The draft.
-    pub fn point(&self) -> &Point {
-        &self.candidates.points[self.at]
+    pub fn draft(&self) -> &Candidate {
+        &self.pack.drafts[self.at]
     }
 
     /// Whether it keeps the error.
     pub fn fits(&self) -> bool {
-        self.point().error <= self.candidates.budget
+        self.draft().error <= self.pack.budget
     }
 
     /// The next draft of less error.
-    pub fn tighter(&self) -> Option<&Point> {
-        self.candidates.points.get(self.at + 1)
+    pub fn tighter(&self) -> Option<&Candidate> {
+        self.pack.drafts.get(self.at + 1)
     }
 }
 
 impl Plan {
     /// Chooses.
-    pub fn new(all: Vec<Candidates>, dropped: Vec<String>, most_bytes: Option<u64>) -> Plan {
-        let packs = all.into_iter().map(|candidates| Chosen { at: cheapest(&candidates), candidates }).collect();
+    pub fn new(all: Vec<PackDrafts>, dropped: Vec<String>, most_bytes: Option<u64>) -> Plan {
+        let packs = all.into_iter().map(|pack| Chosen { at: cheapest(&pack), pack }).collect();
         let mut plan = Plan { packs, dropped, most_bytes };
         if let Some(most) = most_bytes.filter(|most| plan.bytes() > *most) {
             plan.shrink(most);
@@ -55,7 +74,7 @@ impl Plan {
 
     /// Bytes of all packs.
     pub fn bytes(&self) -> u64 {
-        self.packs.iter().map(|chosen| chosen.point().bytes).sum()
+        self.packs.iter().map(|chosen| chosen.draft().bytes).sum()
     }
 
     /// Whether every budget is kept.
@@ -72,9 +91,9 @@ impl Plan {
             let grows = |k: &usize| {
                 let chosen = &self.packs[*k];
                 let next = chosen.tighter().filter(|_| chosen.at < goal[*k]);
-                next.is_some_and(|next| bytes - chosen.point().bytes + next.bytes <= most)
+                next.is_some_and(|next| bytes - chosen.draft().bytes + next.bytes <= most)
             };
-            let excess = |k: &usize| self.packs[*k].point().error / self.packs[*k].candidates.budget;
+            let excess = |k: &usize| self.packs[*k].draft().error / self.packs[*k].pack.budget;
             let worst = (0..self.packs.len()).filter(grows).max_by(|a, b| excess(a).total_cmp(&excess(b)));
             let Some(worst) = worst else { return };
             self.packs[worst].at += 1;
@@ -83,28 +102,55 @@ impl Plan {
 }
 
 /// The smallest draft within the error and a margin, else the one of least error.
-fn cheapest(candidates: &Candidates) -> usize {
-    let fits = |point: &Point| point.error <= USED * candidates.budget;
-    candidates.points.iter().position(fits).unwrap_or(candidates.points.len() - 1)
+fn cheapest(pack: &PackDrafts) -> usize {
+    let fits = |draft: &Candidate| draft.error <= USED * pack.budget;
+    pack.drafts.iter().position(fits).unwrap_or(pack.drafts.len() - 1)
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
-    use crate::project::arguments::Words;
+    use crate::cli::{OptionList, RunFlags, Terminal};
+    use crate::delivery::Delivery;
+    use crate::exit::Failure;
+    use crate::methods::bake::{Bake, FinishedPack};
+    use clap::Parser;
+    use std::path::Path;
+    use std::sync::Arc;
 
-    fn pack(budget: f64, points: &[(u64, f64)]) -> Candidates {
-        let point = |&(bytes, error)| Point { options: Vec::new(), bytes, error };
-        Candidates {
+    /// A bake that makes nothing.
+    #[derive(Parser, Debug)]
+    struct Idle {
+        #[command(flatten)]
+        run: RunFlags,
+    }
+
+    impl Bake for Idle {
+        fn delivery(&self) -> Delivery<'_> {
+            Delivery { output: Path::new("idle"), inputs: &[], run: &self.run }
+        }
+
+        fn bake(&self, _terminal: Terminal) -> Result<Option<FinishedPack>, Failure> {
+            Ok(None)
+        }
+    }
+
+    /// A draft of this size and error.
+    pub fn candidate((bytes, error): (u64, f64)) -> Candidate {
+        let bake = Arc::new(Idle::parse_from(["idle"]));
+        Candidate { bake, options: OptionList::default(), bytes, error }
+    }
+
+    fn pack(budget: f64, drafts: &[(u64, f64)]) -> PackDrafts {
+        PackDrafts {
             name: String::new(),
-            method: String::new(),
+            method: "",
             from: (0, 0),
-            words: Words::default(),
             budget,
             measure: "E₁",
-            seen: String::new(),
+            view: String::new(),
             dropped: Vec::new(),
-            points: points.iter().map(point).collect(),
+            drafts: drafts.iter().copied().map(candidate).collect(),
         }
     }
 

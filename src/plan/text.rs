@@ -1,10 +1,8 @@
 //! A plan in words: what is kept, what is dropped and why, what less error would cost.
 
-use super::Point;
 use super::choose::{Chosen, Plan};
-use crate::project::arguments::flag;
-use crate::project::scene::Scene;
 use crate::quantities::{kib, percent};
+use crate::scene::Scene;
 
 impl Plan {
     /// The plan for a person.
@@ -42,8 +40,8 @@ impl Plan {
             .iter()
             .filter(miss)
             .map(|chosen| {
-                let (found, asked) = (percent(chosen.point().error), percent(chosen.candidates.budget));
-                format!("{} has {} {found}, {asked} was asked", chosen.candidates.name, chosen.candidates.measure)
+                let (found, asked) = (percent(chosen.draft().error), percent(chosen.pack.budget));
+                format!("{} has {} {found}, {asked} was asked", chosen.pack.name, chosen.pack.measure)
             })
             .collect();
         if let Some(most) = self.most_bytes.filter(|most| self.bytes() > *most) {
@@ -54,30 +52,22 @@ impl Plan {
 }
 
 fn of_pack(chosen: &Chosen) -> String {
-    let (pack, point) = (&chosen.candidates, chosen.point());
-    let mut text = format!("{} ({}): {}\n", pack.name, pack.method, pack.seen);
-    let (error, budget) = (percent(point.error), percent(pack.budget));
-    text += &format!("  keep     {}: {}, {} {error} of {budget}\n", words(point), kib(point.bytes), pack.measure);
+    let (pack, draft) = (&chosen.pack, chosen.draft());
+    let mut text = format!("{} ({}): {}\n", pack.name, pack.method, pack.view);
+    let (error, budget) = (percent(draft.error), percent(pack.budget));
+    text += &format!("  keep     {}: {}, {} {error} of {budget}\n", draft.options, kib(draft.bytes), pack.measure);
     for dropped in &pack.dropped {
         text += &format!("  drop     {dropped}\n");
     }
     text += &match chosen.tighter() {
         Some(next) => format!(
             "  tighter  {}: {} {} for {} more\n",
-            words(next),
+            next.options,
             pack.measure,
             percent(next.error),
-            kib(next.bytes - point.bytes)
+            kib(next.bytes - draft.bytes)
         ),
         None => "  tighter  no draft that was made has less error\n".into(),
     };
     text
-}
-
-/// Options as on the command line.
-fn words(point: &Point) -> String {
-    if point.options.is_empty() {
-        return "as the project says".into();
-    }
-    point.options.iter().map(|(key, value)| flag(key, value)).collect::<Vec<_>>().join(" ")
 }

@@ -3,14 +3,16 @@
 //! So each option is defined once, as a flag: the same name, values, defaults and errors. A key is a flag's long name;
 //! `input` is what the command takes without a flag. Paths are relative to the project file.
 
-use super::Target;
-use super::file::Entry;
-use crate::cli::RunFlags;
-use crate::methods::Method;
+use super::entry::Entry;
+use super::model::{CommandLine, Target};
+use crate::cli::{RunFlags, typed};
+use crate::methods::bake::Bake;
+use crate::methods::{MethodCommand, find};
 use clap::builder::ValueParser;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
 use std::any::TypeId;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use toml::de::DeValue;
 
 /// Key of what the command takes without a flag.
@@ -19,7 +21,7 @@ const INPUT: &str = "input";
 const OWN_RUN_FLAGS: [&str; 2] = ["max-memory", "report"];
 
 /// An option and the table that says it.
-pub struct Given<'a> {
+pub struct ProjectOption<'a> {
     /// Key and value.
     pub entry: Entry<'a>,
     /// Name of the table.
@@ -27,41 +29,11 @@ pub struct Given<'a> {
 }
 
 /// What is wrong with a table.
-pub struct Wrong {
+pub struct OptionError {
     /// Key of the option, when it is one.
     pub key: Option<String>,
     /// Why.
     pub why: String,
-}
-
-/// A table as words of a command line.
-#[derive(Clone, Debug, Default)]
-pub struct Words {
-    /// Every flag with the key that it stands for, in the order of the table.
-    pub flags: Vec<(String, String)>,
-    /// What is given without a flag.
-    pub inputs: Vec<String>,
-}
-
-impl Words {
-    /// Whether the table says something of an option.
-    pub fn says(&self, key: &str) -> bool {
-        self.flags.iter().any(|(other, _)| other == key)
-    }
-
-    /// The same with a value, none for a flag, for an option that the table says nothing of.
-    pub fn with(&self, key: &str, value: &str) -> Words {
-        let mut words = self.clone();
-        if !self.says(key) {
-            words.flags.push((key.to_owned(), flag(key, value)));
-        }
-        words
-    }
-}
-
-/// A flag as it is typed; without a value when that is empty.
-pub fn flag(key: &str, value: &str) -> String {
-    if value.is_empty() { format!("--{key}") } else { format!("--{key}={value}") }
 }
 
 /// The commands that bake, as a project sees them.
@@ -80,7 +52,7 @@ impl Default for Methods {
 impl Methods {
     /// All methods.
     pub fn new() -> Methods {
-        let command = Method::augment_subcommands(Command::new("glint-bake")).disable_help_subcommand(true);
+        let command = MethodCommand::augment_subcommands(Command::new("glint-bake")).disable_help_subcommand(true);
         let run_flags = RunFlags::augment_args(Command::new("run"));
         Methods {
             command: command.mut_subcommands(|method| method.disable_help_flag(true)),
@@ -93,64 +65,85 @@ impl Methods {
         self.command.get_subcommands().map(Command::get_name)
     }
 
-    /// A table of options as words.
+    /// A table of options as those of a command line.
     ///
     /// # Errors
     /// The first key whose value no flag can have.
-    pub fn words(&self, method: &str, given: &[Given<'_>], folder: &Path) -> Result<Words, Wrong> {
-        let mut words = Words::default();
-        for option in given {
+    pub fn line(&self, method: &str, options: &[ProjectOption<'_>], folder: &Path) -> Result<CommandLine, OptionError> {
+        let mut line = CommandLine::default();
+        for option in options {
             let key = option.entry.key;
-            let wrong = |why: String| Wrong { key: Some(key.to_owned()), why };
-            for value in self.values(method, option.entry, folder).map_err(wrong)? {
+            let refuse = |why: String| OptionError { key: Some(key.to_owned()), why };
+            for value in self.values(method, option.entry, folder).map_err(refuse)? {
                 match (key, value) {
-                    (INPUT, Value::Text(text)) => words.inputs.push(text),
-                    (_, Value::Text(text)) => words.flags.push((key.to_owned(), format!("--{key}={text}"))),
-                    (_, Value::Flag) => words.flags.push((key.to_owned(), format!("--{key}"))),
+                    (INPUT, Value::Text(text)) => line.inputs.push(text),
+                    (_, Value::Text(text)) => line.flags.push((key.to_owned(), typed(key, &text))),
+                    (_, Value::Flag) => line.flags.push((key.to_owned(), typed(key, ""))),
                 }
             }
         }
-        if words.inputs.is_empty() && self.positional(method).is_some() {
-            return Err(Wrong {
+        if line.inputs.is_empty() && self.positional(method).is_some() {
+            return Err(OptionError {
                 key: None,
                 why: "expected the files to bake as input = \"FILE\", found no input".into(),
             });
         }
-        Ok(words)
+        Ok(line)
     }
 
-    /// The target that words describe.
+    /// The pack that a table describes.
     ///
     /// # Errors
     /// The first option that is wrong, as the command itself would say it.
-    pub fn target(&mut self, name: &str, method: &str, words: &Words, pack: PathBuf) -> Result<Target, Wrong> {
-        let mut arguments = vec![format!("--output={}", pack.display())];
-        arguments.extend(words.flags.iter().map(|(_, flag)| flag.clone()));
-        if !words.inputs.is_empty() {
-            arguments.push("--".into());
-            arguments.extend(words.inputs.iter().cloned());
-        }
-        let line = ["glint-bake", method].into_iter().map(str::to_owned).chain(arguments.iter().cloned());
-        let parsed = self.command.try_get_matches_from_mut(line);
-        let fault = |error: &clap::Error| {
-            let why = reason(error);
-            let named = |key: &str| why.contains(&format!("--{key} ")) || why.contains(&format!("--{key}'"));
-            Wrong { key: words.flags.iter().map(|(key, _)| key).find(|key| named(key)).cloned(), why }
+    pub fn target(
+        &mut self,
+        name: &str,
+        method: &str,
+        line: CommandLine,
+        pack: PathBuf,
+    ) -> Result<Target, OptionError> {
+        let (matches, bake) = self.parse(method, &line, &pack)?;
+        let Some(known) = find(method) else {
+            return Err(OptionError { key: None, why: format!("there is no method {method}") });
         };
-        let matches = parsed.map_err(|error| fault(&error))?;
-        let bake = Method::from_arg_matches(&matches).map_err(|error| fault(&error))?;
-        let (_, matches) = matches.subcommand().unwrap_or((method, &matches));
+        let (_, flags) = matches.subcommand().unwrap_or((method, &matches));
         Ok(Target {
             name: name.to_owned(),
-            options: self.options(method, matches),
-            inputs: self.inputs(method, matches),
-            report: path_of(matches, "report"),
+            options: self.options(method, flags),
+            inputs: self.inputs(method, flags),
+            report: path_of(flags, "report"),
             pack,
             planned: None,
             bake,
-            method: method.to_owned(),
-            arguments,
+            method: known,
+            line,
         })
+    }
+
+    /// The bake that a command line stands for.
+    ///
+    /// # Errors
+    /// The first option that is wrong, as the command itself would say it.
+    pub fn bake(&mut self, method: &str, line: &CommandLine, pack: &Path) -> Result<Arc<dyn Bake>, OptionError> {
+        self.parse(method, line, pack).map(|(_, bake)| bake)
+    }
+
+    fn parse(
+        &mut self,
+        method: &str,
+        line: &CommandLine,
+        pack: &Path,
+    ) -> Result<(ArgMatches, Arc<dyn Bake>), OptionError> {
+        let command = ["glint-bake", method].into_iter().map(str::to_owned).chain(line.arguments(pack));
+        let parsed = self.command.try_get_matches_from_mut(command);
+        let fault = |error: &clap::Error| {
+            let why = reason(error);
+            let named = |key: &str| why.contains(&format!("--{key} ")) || why.contains(&format!("--{key}'"));
+            OptionError { key: line.flags.iter().map(|(key, _)| key).find(|key| named(key)).cloned(), why }
+        };
+        let matches = parsed.map_err(|error| fault(&error))?;
+        let MethodCommand(bake) = MethodCommand::from_arg_matches(&matches).map_err(|error| fault(&error))?;
+        Ok((matches, bake))
     }
 
     /// What a key adds to the command line.
@@ -160,8 +153,10 @@ impl Methods {
         if key == INPUT && arg.is_none() {
             return Err(format!("{method} has no input; leave it out"));
         }
-        if key == "write-normal-map" {
-            return Err("a picture to look at is written by glint-bake lobes, not by a project; leave it out".into());
+        if find(method).is_some_and(|method| method.picture_flags().contains(&key)) {
+            return Err(format!(
+                "a picture to look at is written by glint-bake {method}, not by a project; leave it out"
+            ));
         }
         if key == "output" {
             return Err(

@@ -1,4 +1,4 @@
-//! The project file's tables. What they hold is left to [`super::arguments`], so that options are defined once, as flags.
+//! The project file's tables. What they hold is left to `arguments`, so that options are defined once, as flags.
 //!
 //! ```toml
 //! output = "packs"                # folder of the packs, "packs" when it is left out
@@ -8,35 +8,23 @@
 //! [scene]                         # what tables with a distance or an alpha are planned for
 //! ```
 
-use super::arguments::{Given, Methods, Wrong, folder_join};
-use super::scene::{self, LOBE_KEYS, VIEW_KEYS};
-use super::{Planned, Project, Seen, Target, Way};
+use super::arguments::{Methods, OptionError, ProjectOption, folder_join};
+use super::entry::{Entry, entries};
+use super::model::{PlannedTable, Project, Target};
+use super::scene::{self, ENVIRONMENT_KEYS, SURFACE_KEYS};
+use crate::exit::Failure;
+use crate::methods::ALL;
+use crate::methods::method::Method;
 use crate::output::folder_of;
+use crate::plan::{Alternative, Planned};
+use crate::scene::{Subject, SubjectKind};
 use std::path::{Path, PathBuf};
-use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Where packs go when the project does not say.
 const OUTPUT: &str = "packs";
-/// Method of what stands under `environments`.
-const ENVIRONMENT: &str = "environment";
-/// The group of such tables.
+/// The group of tables that are environments.
 const ENVIRONMENTS: &str = "environments";
-/// Methods that a scene's lights choose from.
-pub const NDF_MAPS: &str = "ndf-maps";
-/// The other one.
-pub const AREA_LIGHT: &str = "area-light";
-
-/// A key with its value and its place in the file.
-#[derive(Clone, Copy)]
-pub struct Entry<'a> {
-    /// The key.
-    pub key: &'a str,
-    /// The value.
-    pub value: &'a DeValue<'a>,
-    /// Byte at which the key begins.
-    pub at: usize,
-}
 
 /// What is wrong, as `file:line: table.key: why`, each once.
 struct Problems<'a> {
@@ -56,8 +44,8 @@ impl Problems<'_> {
     }
 
     /// What is wrong with an option of a table, or with the table `name` that begins at `at`.
-    fn of_option(&mut self, wrong: &Wrong, given: &[Given<'_>], at: usize, name: &str) {
-        match given.iter().find(|option| Some(option.entry.key) == wrong.key.as_deref()) {
+    fn of_option(&mut self, wrong: &OptionError, options: &[ProjectOption<'_>], at: usize, name: &str) {
+        match options.iter().find(|option| Some(option.entry.key) == wrong.key.as_deref()) {
             Some(option) => {
                 self.push(option.entry.at, &format!("{}.{}", option.table, option.entry.key), &wrong.why);
             }
@@ -66,11 +54,21 @@ impl Problems<'_> {
     }
 }
 
+/// Reads a project file.
+///
+/// # Errors
+/// A file that cannot be read; usage, when it is not a project or an option is wrong. Every wrong option is named
+/// with its line.
+pub fn load(path: &Path) -> Result<Project, Failure> {
+    let text = std::fs::read_to_string(path).map_err(|e| Failure::io(path, "cannot be read", &e))?;
+    parse(path, &text).map_err(|errors| Failure::usage(errors.join("\n")))
+}
+
 /// The project that `text` is.
 ///
 /// # Errors
 /// Every problem with its line.
-pub fn parse(path: &Path, text: &str) -> Result<Project, Vec<String>> {
+fn parse(path: &Path, text: &str) -> Result<Project, Vec<String>> {
     let mut problems = Problems { path, text, found: Vec::new() };
     let document = match DeTable::parse(text) {
         Ok(document) => document.into_inner(),
@@ -155,105 +153,103 @@ impl<'a> Reader<'a> {
             return self.problems.push(entry.at, &name, "expected a table of options");
         };
         let own = entries(table);
-        let seen = match (group, self.project.scene.is_some()) {
+        let subject = match (group, self.project.scene.is_some()) {
             (_, false) => Ok(None),
-            (ENVIRONMENTS, true) => scene::lobes(entry, &own).map(|lobes| lobes.map(Seen::Sky)),
-            (_, true) => scene::view(entry, &own).map(|view| view.map(Seen::Surface)),
+            (ENVIRONMENTS, true) => scene::environment_view(entry, &own).map(|view| view.map(Subject::Environment)),
+            (_, true) => scene::surface_view(entry, &own).map(|view| view.map(Subject::Surface)),
         };
-        let seen = match seen {
-            Ok(seen) => seen,
+        let subject = match subject {
+            Ok(subject) => subject,
             Err((wrong, why)) if wrong.at == entry.at => return self.problems.push(entry.at, &name, why),
             Err((wrong, why)) => return self.problems.push(wrong.at, &dotted(&name, wrong.key), why),
         };
         let said = own.iter().find(|own| own.key == "method");
         let method = match said.map(|said| said.value) {
-            None if group == ENVIRONMENTS => Some(ENVIRONMENT),
-            None if seen.is_some() => None,
+            None if group == ENVIRONMENTS => methods_for(SubjectKind::Environment).next(),
+            None if subject.is_some() => None,
             Some(DeValue::String(value)) if self.methods.names().any(|name| name == value) => Some(value.as_ref()),
             _ => {
                 let at = said.map_or(entry.at, |said| said.at);
                 return self.problems.push(at, &dotted(&name, "method"), &format!("expected {}", self.known_methods()));
             }
         };
-        match seen {
+        match subject {
             None => {
                 if let Some(method) = method {
-                    let way = self.way(entry, &name, method, entry.key.to_owned(), &own, &[]);
-                    self.project.targets.extend(way.map(|(_, target)| target));
+                    let target = self.target(entry, &name, method, &own, &[]);
+                    self.project.targets.extend(target);
                 }
             }
-            Some(seen) => self.planned(entry, &name, method, seen, &own),
+            Some(subject) => self.planned(entry, &name, method, subject, &own),
         }
     }
 
-    /// A table that is planned for the scene: every way in which it may be baked.
-    fn planned(&mut self, entry: Entry<'a>, table: &str, method: Option<&str>, seen: Seen, own: &[Entry<'a>]) {
-        let (methods, keys): (Vec<&str>, &[&str]) = match (&seen, method) {
-            (Seen::Sky(_), Some(ENVIRONMENT)) => (vec![ENVIRONMENT], &LOBE_KEYS),
-            (Seen::Surface(_), None) => (vec![NDF_MAPS, AREA_LIGHT], &VIEW_KEYS),
-            (Seen::Surface(_), Some(NDF_MAPS)) => (vec![NDF_MAPS], &VIEW_KEYS),
-            (Seen::Surface(_), Some(AREA_LIGHT)) => (vec![AREA_LIGHT], &VIEW_KEYS),
-            _ => {
-                let why = "nothing to plan for this method; leave out what says how it is seen";
-                return self.problems.push(entry.at, table, why);
-            }
+    /// A table that is planned for the scene: every bake that may come of it.
+    fn planned(&mut self, entry: Entry<'a>, table: &str, method: Option<&str>, subject: Subject, own: &[Entry<'a>]) {
+        let keys: &[&str] = match subject {
+            Subject::Surface(_) => &SURFACE_KEYS,
+            Subject::Environment(_) => &ENVIRONMENT_KEYS,
         };
-        let mut ways = Vec::new();
+        let is_meant = |name: &&str| method.is_none_or(|method| method == *name);
+        let methods: Vec<&str> = methods_for(subject.kind()).filter(is_meant).collect();
+        if methods.is_empty() {
+            let why = "nothing to plan for this method; leave out what says how it is seen";
+            return self.problems.push(entry.at, table, why);
+        }
+        let mut bases = Vec::new();
         for method in &methods {
             // Of several methods, each takes the options that it knows; what none knows is a mistake of the first.
             let knows = |own: &&Entry<'a>| self.methods.knows(method, own.key);
             let foreign = |own: &&Entry<'a>| methods.iter().any(|other| self.methods.knows(other, own.key));
             let own: Vec<Entry<'a>> = own.iter().filter(|own| knows(own) || !foreign(own)).copied().collect();
-            let Some((way, _)) = self.way(entry, table, method, entry.key.to_owned(), &own, keys) else { return };
-            ways.push(way);
+            let Some(base) = self.target(entry, table, method, &own, keys) else { return };
+            bases.push(base);
         }
-        self.project.planned.push(Planned { name: entry.key.to_owned(), seen, ways });
+        let alternative =
+            |base: &Target| Alternative { method: base.method, bake: base.bake.clone(), fixed: base.line.keys() };
+        let alternatives = bases.iter().map(alternative).collect();
+        let planned = Planned { name: entry.key.to_owned(), subject, alternatives };
+        self.project.planned.push(PlannedTable { planned, bases });
     }
 
     /// A table, without `skipped` keys, as a bake of one method.
-    fn way(
+    fn target(
         &mut self,
         entry: Entry<'a>,
         table: &str,
         method: &str,
-        name: String,
         own: &[Entry<'a>],
         skipped: &[&str],
-    ) -> Option<(Way, Target)> {
-        let mut given: Vec<Given<'_>> = Vec::new();
+    ) -> Option<Target> {
+        let mut options: Vec<ProjectOption<'_>> = Vec::new();
         for default in self.defaults.iter().filter(|default| default.key == method) {
             let Some(table) = default.value.as_table() else { continue };
             let others = entries(table).into_iter().filter(|other| own.iter().all(|own| own.key != other.key));
-            given.extend(others.map(|entry| Given { entry, table: format!("defaults.{method}") }));
+            options.extend(others.map(|entry| ProjectOption { entry, table: format!("defaults.{method}") }));
         }
         let own = own.iter().filter(|own| own.key != "method" && !skipped.contains(&own.key));
-        given.extend(own.map(|entry| Given { entry: *entry, table: table.to_owned() }));
-        let pack = self.project.pack(&name);
-        let words = self.methods.words(method, &given, self.folder);
-        let target = words.and_then(|words| Ok((self.methods.target(&name, method, &words, pack)?, words)));
-        match target {
-            Ok((target, words)) => Some((Way { method: method.to_owned(), words }, target)),
+        options.extend(own.map(|entry| ProjectOption { entry: *entry, table: table.to_owned() }));
+        let name = entry.key;
+        let pack = self.project.pack(name);
+        let line = self.methods.line(method, &options, self.folder);
+        match line.and_then(|line| self.methods.target(name, method, line, pack)) {
+            Ok(target) => Some(target),
             Err(wrong) => {
-                self.problems.of_option(&wrong, &given, entry.at, table);
+                self.problems.of_option(&wrong, &options, entry.at, table);
                 None
             }
         }
     }
 }
 
-fn dotted(table: &str, key: &str) -> String {
-    if table == key { key.to_owned() } else { format!("{table}.{key}") }
+/// Names of the methods that scenes plan for what is seen.
+fn methods_for(subject: SubjectKind) -> impl Iterator<Item = &'static str> {
+    let plans = move |method: &&&dyn Method| method.planning().is_some_and(|planning| planning.subject == subject);
+    ALL.iter().filter(plans).map(|method| method.name())
 }
 
-/// Keys of a table in the order of the file.
-fn entries<'a>(table: &'a DeTable<'a>) -> Vec<Entry<'a>> {
-    let entry = |(key, value): (&'a Spanned<_>, &'a Spanned<DeValue<'a>>)| {
-        let name: &'a std::borrow::Cow<'a, str> = key.get_ref();
-        Entry { key: name.as_ref(), value: value.get_ref(), at: key.span().start }
-    };
-    let mut all: Vec<Entry<'a>> = table.iter().map(entry).collect();
-    all.sort_by_key(|entry| entry.at);
-    all
+fn dotted(table: &str, key: &str) -> String {
+    if table == key { key.to_owned() } else { format!("{table}.{key}") }
 }
 
 /// Why a name cannot be that of a file beside the others.

@@ -1,8 +1,8 @@
 //! Whether a pack is what its table, its inputs and this program would give, and if not, why.
 
+use super::model::{Project, Target};
 use super::record::{Record, file_name};
 use super::stamp::Stamp;
-use super::{Project, Target};
 use crate::exit::Failure;
 use std::path::Path;
 

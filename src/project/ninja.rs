@@ -3,7 +3,8 @@
 //! The command of an edge is the bake itself with all its options. Ninja then sees by itself which options changed, and
 //! a front end that runs commands on other machines needs nothing but the program and the inputs there.
 
-use super::Project;
+use super::model::Project;
+use super::settled::inputs;
 use std::path::Path;
 
 /// The build file. `program` is how glint-bake is called; `manifest` is where the file will lie.
@@ -20,7 +21,7 @@ pub fn manifest(project: &Project, program: &str, manifest: &Path) -> String {
         value(&shell(program)),
     );
     // What is planned depends on what the maps hold.
-    let planned: String = super::settled::inputs(project).iter().map(|input| format!(" {}", path(input))).collect();
+    let planned: String = inputs(project).iter().map(|input| format!(" {}", path(input))).collect();
     let own = [path_text(&project.path), format!("--output={}", path_text(manifest)), format!("--program={program}")];
     text += &format!(
         "build {}: manifest {}{planned}\n  arguments = {}\n\n",
@@ -35,8 +36,8 @@ pub fn manifest(project: &Project, program: &str, manifest: &Path) -> String {
         text += &format!(
             "build {}{beside}: bake{inputs}\n  method = {}\n  arguments = {}\n",
             path(&target.pack),
-            value(&target.method),
-            value(&command(&target.arguments)),
+            value(target.method.name()),
+            value(&command(&target.arguments())),
         );
     }
     if !project.targets.is_empty() {

@@ -1,7 +1,7 @@
 //! What a build leaves beside each pack for the next one: all that the pack depended on. A record that is missing or
 //! damaged costs a bake, never a wrong pack.
 
-use super::Target;
+use super::model::Target;
 use super::stamp::Stamp;
 use crate::cli::git_hash;
 use crate::exit::Failure;
@@ -9,9 +9,6 @@ use glint_formats::container::VERSION;
 use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-
-/// Folder of the records in that of the packs.
-pub const FOLDER: &str = ".glint-build";
 
 /// What one pack was made from, by what, and what came out.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,7 +34,7 @@ impl Record {
         Record {
             tool: format!("{} {}", env!("CARGO_PKG_VERSION"), git_hash()),
             format: format!("{}.{}", VERSION.0, VERSION.1),
-            method: target.method.clone(),
+            method: target.method.name().to_owned(),
             options: target.options.clone(),
             inputs: target.inputs.iter().zip(inputs).map(|(path, stamp)| named(path, stamp)).collect(),
             outputs: target.outputs().zip(outputs).map(|(path, stamp)| named(path, stamp)).collect(),

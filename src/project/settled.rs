@@ -1,13 +1,16 @@
 //! The plan of a project between builds: drafts take longer than bakes, so a plan is made once for equal maps and scenes.
 
-use crate::cli::{Terminal, git_hash};
+use super::arguments::Methods;
+use super::model::{Project, Target};
+use super::stamp::Stamp;
+use crate::cli::{OptionList, Terminal, git_hash};
 use crate::exit::{Exit, Failure};
-use crate::plan::plan;
-use crate::project::arguments::Methods;
-use crate::project::stamp::Stamp;
-use crate::project::{Project, Target};
+use crate::methods::bake::Bake;
+use crate::output;
+use crate::plan::{self, Measured, Plan, Planned};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Name of the file in the folder of records; no pack can be named so.
 const FILE: &str = ".plan.json";
@@ -28,9 +31,13 @@ struct Saved {
 struct SavedPack {
     /// Name of the pack.
     name: String,
-    /// Table that it comes from, by number, and way of that.
+    /// Table that it comes from, by number, and alternative of that.
     from: (usize, usize),
-    options: Vec<(String, String)>,
+    /// Options that were chosen.
+    options: OptionList,
+    /// The bake that was chosen, when the plan was made just now.
+    #[serde(skip)]
+    bake: Option<Arc<dyn Bake>>,
 }
 
 /// Whether every budget is kept.
@@ -40,6 +47,37 @@ pub enum Fit {
     Kept,
     /// The plan is the nearest that is possible.
     Nearest,
+}
+
+/// The plan of a project's scene.
+///
+/// # Errors
+/// Usage, when there is nothing to plan; otherwise what stops a draft.
+pub fn plan(project: &Project, terminal: Terminal) -> Result<Plan, Failure> {
+    let Some(scene) = project.scene.as_ref().filter(|_| !project.planned.is_empty()) else {
+        return Err(Failure::usage(format!(
+            "{}: nothing to plan; expected [scene], and a distance or an alpha in what is seen in it",
+            project.path.display()
+        )));
+    };
+    let planned: Vec<Planned> = project.planned.iter().map(|table| table.planned.clone()).collect();
+    plan::plan(scene, &planned, &|name| project.pack(name), terminal)
+}
+
+/// Measures every pack that was planned, each with its name.
+///
+/// # Errors
+/// A pack that is not built or does not verify; inputs that cannot be read.
+pub fn measure(project: &Project) -> Result<Vec<(&str, Measured)>, Failure> {
+    let Some(scene) = &project.scene else { return Ok(Vec::new()) };
+    let mut all = Vec::new();
+    for target in &project.targets {
+        let Some(table) = target.planned.and_then(|at| project.planned.get(at)) else { continue };
+        let planning = target.method.planning();
+        let measured = plan::measure(&target.pack, target.bake.as_ref(), planning, scene, &table.planned.subject)?;
+        all.push((target.name.as_str(), measured));
+    }
+    Ok(all)
 }
 
 /// Makes targets of what is planned, by the plan that was saved or by a new one, which is saved when `save` says so.
@@ -89,11 +127,17 @@ pub fn settle(project: &mut Project, save: bool, terminal: Terminal) -> Result<F
             )));
         }
         let fault = || Failure::usage(format!("{}: the saved plan does not fit; delete it", path.display()));
-        let way =
-            project.planned.get(pack.from.0).and_then(|planned| planned.ways.get(pack.from.1)).ok_or_else(fault)?;
-        let words = pack.options.iter().fold(way.words.clone(), |words, (key, value)| words.with(key, value));
+        let table = project.planned.get(pack.from.0).ok_or_else(fault)?;
+        let base = table.bases.get(pack.from.1).ok_or_else(fault)?;
         let place = project.pack(&pack.name);
-        let target = methods.target(&pack.name, &way.method, &words, place).map_err(|_| fault())?;
+        let bake = match &pack.bake {
+            Some(bake) => bake.clone(),
+            None => {
+                let line = pack.options.iter().fold(base.line.clone(), |line, (key, value)| line.with(key, value));
+                methods.bake(base.method.name(), &line, &place).map_err(|_| fault())?
+            }
+        };
+        let target = base.chosen(&pack.name, place, &pack.options, bake);
         project.targets.push(Target { planned: Some(pack.from.0), ..target });
     }
     Ok(if saved.fits { Fit::Kept } else { Fit::Nearest })
@@ -106,14 +150,14 @@ pub fn beyond(project: &Project) -> Failure {
 }
 
 fn key(project: &Project) -> String {
-    let tables: Vec<String> = project.planned.iter().map(|planned| format!("{planned:?}")).collect();
+    let tables: Vec<String> = project.planned.iter().map(|table| format!("{:?}", table.planned)).collect();
     format!("{} {}\n{:?}\n{}", env!("CARGO_PKG_VERSION"), git_hash(), project.scene, tables.join("\n"))
 }
 
 /// Every map that is planned, in the order of the file.
 pub fn inputs(project: &Project) -> Vec<PathBuf> {
-    let first = project.planned.iter().filter_map(|planned| planned.ways.first());
-    first.flat_map(|way| way.words.inputs.iter().map(PathBuf::from)).collect()
+    let first = project.planned.iter().filter_map(|table| table.bases.first());
+    first.flat_map(|base| base.line.inputs.iter().map(PathBuf::from)).collect()
 }
 
 fn stamps(project: &Project, old: Option<&Saved>) -> Result<Vec<Stamp>, Failure> {
@@ -128,16 +172,17 @@ fn made(project: &Project, key: String, inputs: Vec<Stamp>, terminal: Terminal) 
     let plan = plan(project, terminal)?;
     let text = project.scene.as_ref().map_or(String::new(), |scene| plan.to_text(scene));
     let packs = plan.packs.iter().map(|chosen| SavedPack {
-        name: chosen.candidates.name.clone(),
-        from: chosen.candidates.from,
-        options: chosen.point().options.clone(),
+        name: chosen.pack.name.clone(),
+        from: chosen.pack.from,
+        options: chosen.draft().options.clone(),
+        bake: Some(chosen.draft().bake.clone()),
     });
     Ok(Saved { key, inputs, packs: packs.collect(), fits: plan.fits(), text })
 }
 
 fn write(path: &Path, saved: &Saved) -> Result<(), Failure> {
     let fault = |e: std::io::Error| Failure::io(path, "cannot be written", &e);
-    std::fs::create_dir_all(crate::output::folder_of(path)).map_err(fault)?;
+    std::fs::create_dir_all(output::folder_of(path)).map_err(fault)?;
     let text = serde_json::to_string(saved).map_err(|e| fault(e.into()))?;
-    crate::output::write(path, text.as_bytes()).map(|_| ())
+    output::write(path, text.as_bytes()).map(|_| ())
 }

@@ -6,14 +6,10 @@ use crate::render::{Material, Method, Renderer, Shown};
 use crate::scene::Mesh;
 use glam::Vec3;
 use glint_bake_core::error::BakeError;
-use glint_bake_core::{area_light, dictionary, environment, lobes, ndf_maps, surface};
+use glint_bake_core::{area_light, dictionary, environment, lobes, ndf_maps, surface, synthesis};
 use glint_formats::Pack;
-use glint_formats::lobes::LobesParams;
+use glint_formats::lobes::{BINDINGS, LobesParams};
 use std::rc::Rc;
-
-/// Share of a map beyond the rim of the disk of normals that pictures of lobes do not give back: less than a step of 8 bits on the
-/// map's average, more where its few steep normals are.
-const BEYOND_RIM: f32 = 1e-4;
 
 /// All that can be shown, and the environment that can light it.
 #[derive(Debug, Default)]
@@ -102,22 +98,23 @@ impl Subjects {
 
     fn add_lobes(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
         for name in lobes::sections::maps(pack) {
-            let baked = lobes::sections::from_pack(pack, name).map_err(bad)?;
-            let data = Rc::new(methods::lobes::upload(gpu, &baked));
-            let shown = self.add(Method::Lobes, name, &data, lobes_material(&baked.params));
-            shown.files = methods::lobes::modules(&baked.params).to_vec();
-            shown.rim_roughness = baked.rim_roughness(BEYOND_RIM);
+            let params = lobes::sections::params(pack, name).map_err(bad)?;
+            let data = Rc::new(bind_pack(gpu, pack, name, BINDINGS, params.wrap)?);
+            let shown = self.add(Method::Lobes, name, &data, lobes_material(&params));
+            shown.files = methods::lobes::modules(&params).to_vec();
+            shown.rim_roughness = params.rim_roughness;
         }
         Ok(())
     }
 
     fn add_surfaces(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
         for name in surface::sections::surfaces(pack) {
-            let baked = surface::sections::from_pack(pack, name).map_err(bad)?;
-            let data = Rc::new(methods::lobes::upload_surface(gpu, &baked));
-            let shown = self.add(Method::Surface, name, &data, lobes_material(&baked.lobes.params));
-            shown.files = methods::lobes::surface_modules(&baked, true).to_vec();
-            shown.rim_roughness = baked.lobes.rim_roughness(BEYOND_RIM);
+            let params = &lobes::sections::params(pack, name).map_err(bad)?;
+            let synthesis = &synthesis::sections::params(pack, name).map_err(bad)?;
+            let data = Rc::new(bind_pack(gpu, pack, name, BINDINGS, params.wrap)?);
+            let shown = self.add(Method::Surface, name, &data, lobes_material(params));
+            shown.files = methods::lobes::surface_modules(params, synthesis, true).to_vec();
+            shown.rim_roughness = params.rim_roughness;
         }
         Ok(())
     }
@@ -161,7 +158,7 @@ fn nothing(gpu: &Gpu) -> Rc<Resources> {
 }
 
 /// A tiny example repeats some times over the surface.
-fn ndf_material(baked: &ndf_maps::eval::Material) -> Material {
+fn ndf_material(baked: &ndf_maps::baked::Material) -> Material {
     const EXAMPLES: f32 = 16.0;
     let params = &baked.maps.params;
     Material {

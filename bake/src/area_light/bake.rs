@@ -57,7 +57,7 @@ pub fn check(map: &NormalMap, options: &AreaLightOptions) -> Result<(), BakeErro
     let needed = u64::from(map.width) * u64::from(map.height) * BYTES_PER_TEXEL;
     if needed > options.max_memory {
         return Err(BakeError::LimitExceeded(format!(
-            "max_memory: the mip chain of {} × {} texels needs {needed} bytes, the limit is {}; raise it, or use a part of the \
+            "the mip chain of {} × {} texels needs {needed} bytes, the limit is {}; allow more, or use a part of the \
              map",
             map.width, map.height, options.max_memory
         )));

@@ -43,6 +43,6 @@ impl AreaLightOptions {
         if (low..=high).contains(&self.base_roughness) {
             return Ok(());
         }
-        Err(BakeError::BadOption(format!("base_roughness: expected {low} to {high}, found {}", self.base_roughness)))
+        Err(BakeError::BadOption(format!("base-roughness: expected {low} to {high}, found {}", self.base_roughness)))
     }
 }

@@ -84,20 +84,20 @@ impl DictionaryOptions {
         }
         if !(0.01..=10.0).contains(&self.alpha_dict) {
             return bad(format!(
-                "alpha_dict: expected 0.01 to 10, so that densities fit half floats, found {}; it does not limit the \
+                "alpha-dict: expected 0.01 to 10, so that densities fit half floats, found {}; it does not limit the \
                  roughness at run time",
                 self.alpha_dict
             ));
         }
         if !(self.lobe_std.is_finite() && self.lobe_std >= MIN_LOBE_STD) {
             return bad(format!(
-                "lobe_std: expected a slope of {MIN_LOBE_STD} or more, so that densities fit half floats, found {}",
+                "lobe-std: expected a slope of {MIN_LOBE_STD} or more, so that densities fit half floats, found {}",
                 self.lobe_std
             ));
         }
         if self.lobe_std >= self.domain() {
             return bad(format!(
-                "lobe_std: expected a slope below the domain of the tables, which ends at {:.4}, found {}",
+                "lobe-std: expected a slope below the domain of the tables, which ends at {:.4}, found {}",
                 self.domain(),
                 self.lobe_std
             ));
@@ -105,7 +105,7 @@ impl DictionaryOptions {
         let narrowest = MIN_LOBE_SPACINGS * self.spacing();
         if self.lobe_std < narrowest {
             return bad(format!(
-                "lobe_std: expected {narrowest:.5} or more for {} entries, {:.5} apart, or {} entries or more, found {}: a \
+                "lobe-std: expected {narrowest:.5} or more for {} entries, {:.5} apart, or {} entries or more, found {}: a \
                  lobe can fall between two entries and leave its table empty",
                 self.entries,
                 self.spacing(),
@@ -115,7 +115,7 @@ impl DictionaryOptions {
         }
         if self.mean_variance() <= 0.0 {
             return bad(format!(
-                "lobe_std: expected lobes that are narrower than the target, whose standard deviation is {:.4}, as the \
+                "lobe-std: expected lobes that are narrower than the target, whose standard deviation is {:.4}, as the \
                  sampler reads them with {} entries, found {}; narrower lobes or more entries would work",
                 self.target_std(),
                 self.entries,
@@ -126,7 +126,7 @@ impl DictionaryOptions {
         let most = u64::from(MAX_TABLE_SIDE);
         if entries > most || rows > most || rows * entries > MAX_TABLE_WORDS {
             return Err(BakeError::LimitExceeded(format!(
-                "marginals, levels, entries: expected at most {most} tables, of {most} entries, and {MAX_TABLE_WORDS} entries in \
+                "expected at most {most} tables, of {most} entries, and {MAX_TABLE_WORDS} entries in \
                  all, found {rows} tables ({} marginals × {} levels) of {entries} entries",
                 self.marginals, self.levels
             )));

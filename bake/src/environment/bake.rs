@@ -3,6 +3,7 @@
 //! Paper: section 5. Radiance and indicators have the same weights in every texel, so they are filtered together.
 
 use super::albedo;
+use super::baked::Environment;
 use super::cube::{Resampling, texel_solid_angle_sr};
 use super::image::{EnvironmentImage, luminance};
 use super::kernel::{Lobe, roughness_of_mips};
@@ -10,28 +11,21 @@ use super::levels::{Seen, fewest, log_uniform, optimal, shares};
 use super::options::{EnvironmentOptions, LevelCount};
 use super::prefilter::filter_mip;
 use super::quality;
-use super::quantise;
-use super::scale::{Mip, radiance_scale, rounding_error};
-use super::tables::Environment;
+use super::rounding::{self, Mip, radiance_scale, rounding_error, shared_exponent};
 use super::tree::{BASE_CHANNELS, Tree};
 use crate::error::{BakeError, Result};
 use crate::progress::Progress;
 use glint_formats::environment::{EnvironmentParams, LevelChoice, MeasuredError, Storage};
 use half::f16;
 
-/// Bakes `image`, of which `negative_pixels` were mended.
+/// Bakes an environment of an image. Stages of `progress`: `filter`, in texels, and `measure`, in mips.
 ///
 /// # Errors
 /// Those of [`EnvironmentOptions::validate`]; [`BakeError::LimitExceeded`] when a mip misses the error that was asked.
-pub fn bake(
-    image: &EnvironmentImage,
-    negative_pixels: u64,
-    options: &EnvironmentOptions,
-    progress: &dyn Progress,
-) -> Result<Environment> {
+pub fn bake(image: &EnvironmentImage, options: &EnvironmentOptions, progress: &dyn Progress) -> Result<Environment> {
     options.validate()?;
     let (levels, second_moment) = choose_levels(image, options);
-    let params = EnvironmentParams {
+    let mut params = EnvironmentParams {
         face_size: options.face_size,
         kernel: options.kernel,
         storage: options.storage,
@@ -43,15 +37,21 @@ pub fn bake(
         albedo_size: albedo::SIZE,
         source_width: image.width,
         source_height: image.height,
-        negative_pixels,
+        negative_pixels: image.report.negative_pixels,
         mean_radiance: image.mean(),
         max_error: options.max_error,
         measured: MeasuredError { second_moment, ..MeasuredError::default() },
     };
-    let mut environment =
-        Environment { params, radiance: Vec::new(), indicators: Vec::new(), colours: Vec::new(), albedo: Vec::new() };
-    let mips = filtered_mips(image, options, &environment.params, progress);
-    choose_scale(image, &mips, &mut environment.params);
+    let mips = filtered_mips(image, options, &params, progress);
+    choose_scale(image, &mips, &mut params);
+    let mut environment = Environment {
+        uniform: params.uniform(),
+        params,
+        radiance: Vec::new(),
+        indicators: Vec::new(),
+        colours: Vec::new(),
+        albedo: Vec::new(),
+    };
     round(&mips, &mut environment);
     environment.params.measured.energy = energy_error(image, &mips.texels[0], mips.channels);
     drop(mips);
@@ -188,18 +188,18 @@ fn round(mips: &Mips, environment: &mut Environment) {
         let mut colours = vec![0u32; if params.coloured { more * count } else { 0 }];
         for (k, texel) in texels.chunks_exact(mips.channels).enumerate() {
             let rgba = [texel[0], texel[1], texel[2], texel[3].max(0.0).sqrt()];
-            quantise::radiance(rgba, params.radiance_scale, params.storage, &mut environment.radiance);
+            rounding::radiance(rgba, params.radiance_scale, params.storage, &mut environment.radiance);
             let shares = &texel[BASE_CHANNELS..BASE_CHANNELS + more];
             // Blocks taken as points may give a few 1e-4 more than the whole.
             let whole = shares.iter().sum::<f64>().max(1.0);
             let shares: Vec<f64> = shares.iter().map(|share| share.max(0.0) / whole).collect();
-            for (i, bits) in quantise::indicators(&shares, params.storage).into_iter().enumerate() {
+            for (i, bits) in rounding::indicators(&shares, params.storage).into_iter().enumerate() {
                 indicators[((i / 4) * count + k) * 4 + i % 4] = bits;
             }
             if params.coloured {
                 for i in 0..more {
                     let light = &texel[BASE_CHANNELS + more + 3 * i..][..3];
-                    colours[i * count + k] = quantise::shared_exponent(unit_luminance([light[0], light[1], light[2]]));
+                    colours[i * count + k] = shared_exponent(unit_luminance([light[0], light[1], light[2]]));
                 }
             }
         }
@@ -226,7 +226,7 @@ fn check_error(environment: &Environment) -> Result<()> {
         if measured.rmse > most {
             return Err(BakeError::LimitExceeded(format!(
                 "mip {mip} (α {:.4}): expected a root mean square error of {most:.5} of the mean at most, found {:.5}; \
-                 raise --max-error",
+                 allow a larger error",
                 params.roughness[mip], measured.rmse
             )));
         }

@@ -1,6 +1,6 @@
 // Image-based lighting of glints: filtered radiance, and a draw of how many facets reflect each of a few radiance levels.
 // Kneiphof and Klein 2025, "Real-Time Image-based Lighting of Glints", sections 4 and 5, Eq. 11, 15, 17 and 21.
-// Twin of glint-bake-core environment/{eval,glints}.rs, where deviations from the paper are derived: the variance of
+// Twin of glint-bake-core environment/eval.rs, where deviations from the paper are derived: the variance of
 // glints is that of the filtered second moment, and levels may have colours.
 //
 // Directions are unit vectors in the environment's frame. Accessors that the including program defines; `mip` is
@@ -44,8 +44,8 @@ struct GlintChances {
     p: GlintLevels,
     // Sums of L p and L^2 p over the levels.
     moments: vec2f,
-    // How far glints vary from the smooth reflection, 0 to 1, against what the levels give.
-    spread: f32,
+    // Factor on the standard deviation of what the levels give, 0 to 1.
+    std_factor: f32,
     // Where the smooth reflection looks.
     mirror: vec3f,
     mip: f32,
@@ -139,7 +139,7 @@ fn glint_facet_moments(environment: GlintEnvironment, p: GlintLevels) -> vec2f {
 }
 
 // Factor that brings the variance of the levels to that of the unsorted facets; `square` is the filtered second moment.
-fn glint_spread_factor(moments: vec2f, square: f32, visible: f32) -> f32 {
+fn glint_std_factor(moments: vec2f, square: f32, visible: f32) -> f32 {
     let mean2 = moments.x * moments.x;
     let of_levels = moments.y - mean2;
     if of_levels > 0.0 {
@@ -158,8 +158,8 @@ fn glint_chances(environment: GlintEnvironment, surface: GlintSurface) -> GlintC
     let visible = min(areas.z / areas.w, 1.0);
     let p = glint_level_probabilities(environment, mirror, mip, visible);
     let moments = glint_facet_moments(environment, p);
-    let spread = glint_spread_factor(moments, radiance.w * radiance.w, visible);
-    return GlintChances((surface.f0 * areas.x + areas.y) * radiance.rgb, p, moments, spread, mirror, mip);
+    let std_factor = glint_std_factor(moments, radiance.w * radiance.w, visible);
+    return GlintChances((surface.f0 * areas.x + areas.y) * radiance.rgb, p, moments, std_factor, mirror, mip);
 }
 
 // Drawn over expected light, channel by channel.
@@ -167,17 +167,17 @@ fn glint_coloured_ratios(
     environment: GlintEnvironment,
     chances: GlintChances,
     facets: f32,
-    drawn_levels: GlintLevels,
+    counts: GlintLevels,
 ) -> vec3f {
     let level = environment.level;
     var light = array<vec4f, 4>(level.a, level.b, level.c, level.d);
-    var counts = array<vec4f, 4>(drawn_levels.a, drawn_levels.b, drawn_levels.c, drawn_levels.d);
+    var drawn_counts = array<vec4f, 4>(counts.a, counts.b, counts.c, counts.d);
     var p = array<vec4f, 4>(chances.p.a, chances.p.b, chances.p.c, chances.p.d);
     var drawn = vec3f(0.0);
     var expected = vec3f(0.0);
     for (var k = 1u; k < min(environment.levels, 16u); k++) {
         let colour = glint_environment_colour_at(k - 1u, chances.mirror, chances.mip) * light[k / 4u][k % 4u];
-        drawn += colour * counts[k / 4u][k % 4u];
+        drawn += colour * drawn_counts[k / 4u][k % 4u];
         expected += colour * (p[k / 4u][k % 4u] * facets);
     }
     return select(vec3f(1.0), drawn / max(expected, vec3f(1.0e-37)), expected > vec3f(0.0));
@@ -205,7 +205,7 @@ fn glint_environment_draw(
         let light = glint_levels_dot(environment.level, counts, environment.levels);
         ratios = vec3f(light * share);
     }
-    let drawn = max(vec3f(there) + chances.spread * (ratios - there), vec3f(0.0));
+    let drawn = max(vec3f(there) + chances.std_factor * (ratios - there), vec3f(0.0));
     // Without light or facets there is nothing to draw.
     let dark = select(vec3f(0.0), vec3f(1.0), facets > 0.0);
     return chances.smooth_radiance * select(dark, drawn, (chances.moments.x > 0.0) & (facets > 0.0));

@@ -38,6 +38,8 @@ pub struct EnvironmentImage {
     pub height: u32,
     /// Linear RGB radiance.
     pub pixels: Vec<[f32; 3]>,
+    /// What was mended.
+    pub report: ImageReport,
 }
 
 impl EnvironmentImage {
@@ -46,7 +48,7 @@ impl EnvironmentImage {
     /// # Errors
     /// [`BakeError::BadInput`] names the first pixel that is NaN, infinite or above [`MAX_RADIANCE`], or says why the
     /// size is none of a whole sphere.
-    pub fn new(width: u32, height: u32, mut pixels: Vec<[f32; 3]>) -> Result<(EnvironmentImage, ImageReport)> {
+    pub fn new(width: u32, height: u32, mut pixels: Vec<[f32; 3]>) -> Result<EnvironmentImage> {
         check_size(width, height)?;
         if pixels.len() as u64 != u64::from(width) * u64::from(height) {
             let found = pixels.len();
@@ -72,7 +74,7 @@ impl EnvironmentImage {
                 *pixel = pixel.map(|value| if value > 0.0 { value } else { 0.0 });
             }
         }
-        Ok((EnvironmentImage { width, height, pixels }, report))
+        Ok(EnvironmentImage { width, height, pixels, report })
     }
 
     /// Luminance of a pixel.
@@ -116,7 +118,7 @@ impl EnvironmentImage {
             let row = &self.pixels[(y / factor * self.width) as usize..][..self.width as usize];
             pixels.extend((0..width).map(|x| row[(x / factor) as usize]));
         }
-        EnvironmentImage { width, height, pixels }
+        EnvironmentImage { width, height, pixels, report: self.report }
     }
 }
 

@@ -1,44 +1,40 @@
 //! Environments: image-based lighting of glints from filtered radiance and filtered indicators of radiance levels.
 //!
-//! Method: Kneiphof and Klein 2025, "Real-Time Image-based Lighting of Glints", sections 3.4 to 5. An equirectangular
+//! Method: Kneiphof and Klein 2025, "Real-Time Image-based Lighting of Glints", sections 3.3 to 5. An equirectangular
 //! image ([`image`]) becomes a cube ([`cube`]) whose mips are filtered with a GGX lobe each ([`kernel`], [`prefilter`]):
-//! radiance, its square, and the share of each of a few radiance levels ([`levels`]). At run time ([`eval`]) the
-//! shares are the probabilities that a facet reflects each level, scaled by areas that depend on view angle and
-//! roughness only ([`albedo`]), and [`glints`] draws,
-//! with the random words of a place on the surface ([`cells`]). [`reference`] sums over every pixel in f64, and [`quality`] measures one by the other.
+//! radiance, its square, and the share of each of a few radiance levels ([`levels`]). At run time ([`eval`], by look-ups as in
+//! [`lookup`]) the shares are the probabilities that a facet reflects each level, scaled by areas that depend on view angle and
+//! roughness only ([`albedo`]), and one draw a pixel is made with the random words of a place on the surface ([`query`]).
+//! [`reference`] sums over every pixel in f64 and places facets one by one, and [`quality`] measures one by the other.
 //!
 //! What deviates from the paper, and why, stands on top of each file and in `docs/methods/environment.md`. The main points:
-//! - filtering to an error bound by a tree of the source, without samples ([`tree`], [`blocks`], [`filter_sum`]);
+//! - filtering to an error bound by a tree of the source, without samples ([`tree`], [`prefilter`]);
 //! - the source is resampled by exact areas;
 //! - levels chosen for the least error of the second moment;
-//! - the darkest indicator is what the others leave of 1 ([`quantise`]);
+//! - the darkest indicator is what the others leave of 1 ([`rounding`]);
 //! - levels may have colours of their own.
 
 pub mod albedo;
-pub mod bake;
-pub mod blocks;
-pub mod cells;
+mod bake;
+pub mod baked;
 pub mod cube;
 pub mod eval;
-pub mod filter_sum;
-pub mod glints;
 pub mod image;
-pub mod kernel;
+mod kernel;
 pub mod levels;
+pub mod lookup;
 pub mod options;
-pub mod prefilter;
+mod prefilter;
 pub mod quality;
-pub mod quantise;
+pub mod query;
 pub mod reference;
-pub mod reference_glints;
-pub mod scale;
+mod rounding;
 pub mod sections;
-pub mod tables;
-pub mod tree;
+mod tree;
 
-crate::shader::shaders!("environment": "cells", "eval");
+crate::shader::shaders!("environment": "eval", "query");
 
 pub use bake::bake;
+pub use baked::Environment;
 pub use image::EnvironmentImage;
 pub use options::{EnvironmentOptions, LevelCount};
-pub use tables::Environment;

@@ -73,39 +73,41 @@ impl EnvironmentOptions {
     /// Checks what can be checked without an image.
     ///
     /// # Errors
-    /// [`BakeError::BadOption`] names the flag, what was found and what would work.
+    /// [`BakeError::BadOption`] names the option, what was expected and what was found.
     pub fn validate(&self) -> Result<()> {
         let size = self.face_size;
         if !(size.is_power_of_two() && (MIN_FACE_SIZE..=MAX_FACE_SIZE).contains(&size)) {
             return bad(format!(
-                "--face-size: expected a power of two, {MIN_FACE_SIZE} to {MAX_FACE_SIZE}, found {size}"
+                "face-size: expected a power of two, {MIN_FACE_SIZE} to {MAX_FACE_SIZE}, found {size}"
             ));
         }
         let least = self.min_face_size;
         if !(least.is_power_of_two() && least <= size) {
-            return bad(format!("--min-face-size: expected a power of two up to {size}, found {least}"));
+            return bad(format!("min-face-size: expected a power of two up to {size}, found {least}"));
         }
         match self.levels {
             LevelCount::Exactly(count) if !(1..=MAX_LEVELS as u32).contains(&count) => {
-                return bad(format!("--levels: expected 1 to {MAX_LEVELS}, or auto, found {count}"));
+                return bad(format!("levels: expected 1 to {MAX_LEVELS}, or auto, found {count}"));
             }
             LevelCount::Fewest(error) if !(error > 0.0 && error.is_finite()) => {
-                return bad(format!("--max-moment-error: expected a number above 0, found {error}"));
+                return bad(format!("max-moment-error: expected a number above 0, found {error}"));
             }
             _ => {}
         }
         if self.coloured && self.levels == LevelCount::Exactly(1) {
-            return bad("--coloured: one level has no colours of its own; give --levels 2 or more".into());
+            return bad("coloured: expected two levels or more, which have colours of their own, found one".into());
         }
         if matches!(self.levels, LevelCount::Fewest(_)) && self.level_choice == LevelChoice::LogUniform {
-            return bad("--levels auto: the least count is known for --level-choice optimal only".into());
+            return bad(
+                "level-choice: expected optimal levels where their number is automatic, found log-uniform ones".into(),
+            );
         }
         let (low, high) = ERROR_RANGE;
         if !(low..=high).contains(&self.max_error) {
-            return bad(format!("--max-error: expected {low} to {high}, found {}", self.max_error));
+            return bad(format!("max-error: expected {low} to {high}, found {}", self.max_error));
         }
         if !(self.floor > 0.0 && self.floor.is_finite()) {
-            return bad(format!("--floor: expected a radiance above 0, found {}", self.floor));
+            return bad(format!("floor: expected a radiance above 0, found {}", self.floor));
         }
         Ok(())
     }

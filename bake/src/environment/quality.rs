@@ -4,11 +4,12 @@
 //! largest error of a measured texel as a share of its exact value. Texels are chosen at random, half of them evenly and
 //! half by their luminance, and weighted by how likely each was, so that a sun of a few texels is not missed.
 
+use super::baked::Environment;
 use super::cube::texel_direction;
+use super::eval::Chances;
 use super::image::{EnvironmentImage, luminance};
 use super::prefilter::{OF_SHARP, SHARP};
 use super::reference::{Filtered, filtered, texel_mean};
-use super::tables::Environment;
 use crate::progress::Progress;
 use crate::rng::{ItemRng, Purpose};
 use glint_formats::environment::{EnvironmentParams, MeasuredMip};
@@ -132,4 +133,16 @@ pub fn measure(image: &EnvironmentImage, count: u32, environment: &mut Environme
         progress.advance(1);
     }
     progress.end();
+}
+
+/// Variance of [`environment_draw`](super::eval::environment_draw) in luminance over the square of its mean, for facets as `counting`
+/// makes them whole.
+pub fn relative_variance(chances: &Chances, facets: f32) -> f32 {
+    let mean2 = chances.moments[0] * chances.moments[0];
+    if !(mean2 > 0.0 && facets > 0.0) {
+        return 0.0;
+    }
+    let part = facets - facets.floor();
+    let per_facet = (chances.moments[1] / mean2 - 1.0).max(0.0);
+    chances.std_factor * chances.std_factor * per_facet / facets + part * (1.0 - part) / (facets * facets)
 }

@@ -1,6 +1,6 @@
 //! An environment as sections of a pack, and back.
 
-use super::tables::Environment;
+use super::baked::Environment;
 use crate::error::{BakeError, Result};
 use crate::pack_access::{bytes, names_with, parameters, records};
 use glint_formats::environment::{ALBEDO, COLOURS, EnvironmentParams, INDICATORS, PARAMS, RADIANCE};
@@ -37,6 +37,7 @@ pub fn from_pack(pack: &Pack, name: &str) -> Result<Environment> {
         indicators: Vec::new(),
         colours: Vec::new(),
         albedo: records(pack, ALBEDO, name)?,
+        uniform: params.uniform(),
         params,
     };
     let params = &environment.params;

@@ -17,8 +17,8 @@ pub const BASE_CHANNELS: usize = 4;
 pub struct Block {
     /// Mean direction of its light, shorter than 1.
     pub mean: [f32; 3],
-    /// (1 − |mean|²) / 2: what the block's extent adds to t.
-    pub spread: f32,
+    /// Half the variance of the directions of its light, (1 − |mean|²) / 2: what its extent adds to t.
+    pub half_variance: f32,
     /// No part of the block is farther than this from `mean`.
     pub radius: f32,
     /// Luminance times solid angle.
@@ -224,7 +224,7 @@ impl Build<'_> {
         let mean = if m.light > 0.0 { m.luminance / m.light } else { centroid };
         let shifted = |vector: DVec3, sum: f64| (vector - mean * sum).length();
         block.mean = mean.as_vec3().to_array();
-        block.spread = (0.5 * (1.0 - mean.length_squared())).max(0.0) as f32;
+        block.half_variance = (0.5 * (1.0 - mean.length_squared())).max(0.0) as f32;
         block.radius = self.radius(r, mean) as f32;
         block.light = m.light as f32;
         block.square = m.square as f32;

@@ -3,33 +3,35 @@
 //! Tan et al. 2022, section 5.1.2. Where the paper clusters every level from the texels, a level here reduces the lobes of
 //! the level below: cheaper, and closer to the map, since a good lobe is made once.
 
+use super::baked::BakedLobes;
 use super::gaussian::Gaussian4;
 use super::merge::{self, MergeSettings};
 use super::options::{LobesOptions, NormalsChoice, ROUNDING};
 use super::quality::{self, Measured};
-use super::quantise::{self, Lobe, Scales};
+use super::quantise;
 use super::query::QuerySettings;
 use super::reference::Reference;
-use super::seeds;
 use crate::error::Result;
 use crate::normal_map::NormalMap;
 use crate::progress::Progress;
 use crate::quality::sweep;
 use crate::rng::{ItemRng, Purpose};
-use crate::wrap::wrapped;
-use glam::{DVec2, Vec2};
-use glint_formats::lobes::{FootprintError, LobeLevel, LobeStorage, LobesParams, MAX_LAST_CELLS, NormalsStorage};
+use glam::{DMat2, DVec2, Vec2};
+use glint_formats::Wrap;
+use glint_formats::lobes::{
+    BEYOND_RIM, Filter, FootprintError, LobeLevel, LobesParams, MAX_LAST_CELLS, NormalsStorage,
+};
 use rayon::prelude::*;
 
-/// Cells that are reduced from seeds, one a texel, in texels; half that for four seeds a texel. Finer than the stored levels:
-/// the cost of a reduction grows with the square of the parts of a cell.
+/// Edge of cells that are reduced from seeds, one a texel, in texels; half that for four seeds a texel. Finer than the stored
+/// levels: the cost of a reduction grows with the square of the parts of a cell.
 const SEED_CELL: u32 = 8;
 /// Footprint that cells of an edge are read with, over that edge: differences of position below it do not show.
 const BLUR_OF_CELL: f64 = 0.6;
 /// Sizes of footprints that the bake measures its error over, in texels, as far as the map goes.
 pub(crate) const MEASURED_SIGMAS: [f64; 5] = [2.0, 4.0, 8.0, 16.0, 32.0];
 
-/// Sizes above this are measured over half the footprints.
+/// Standard deviation of footprints, in texels, above which half as many are measured.
 const LARGE_SIGMA: f64 = 4.0;
 /// Range of normals over the roughness that the error is measured at, at most: the exact NDF of a rougher map takes minutes.
 const MEASURED_RANGE: f64 = 100.0;
@@ -38,63 +40,24 @@ const MEASURED_RANGE: f64 = 100.0;
 /// than half a point on steep maps.
 pub(crate) const MEASURED_REFINEMENT: f64 = 0.6;
 
-/// MIP-mapped lobes of one map, ready for a pack.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BakedLobes {
-    /// Parameters.
-    pub params: LobesParams,
-    /// Records of all lobes.
-    pub lobes: Vec<u8>,
-    /// Texels of the normals.
-    pub normals: Vec<u8>,
-}
-
-impl BakedLobes {
-    /// Bytes that a renderer keeps.
-    pub fn gpu_bytes(&self) -> usize {
-        self.lobes.len() + self.normals.len()
-    }
-
-    /// A lobe by its index among all; `scales` are those of its level.
-    pub fn lobe(&self, index: u32, scales: &Scales) -> Lobe {
-        let stride = self.params.storage.stride() as usize;
-        let bytes = &self.lobes[index as usize * stride..][..stride];
-        match self.params.storage {
-            LobeStorage::Packed => quantise::decode_packed(&bytemuck::pod_read_unaligned(bytes), &self.params, scales),
-            LobeStorage::Half => quantise::decode_half(&bytemuck::pod_read_unaligned(bytes), &self.params, scales),
-        }
-    }
-
-    /// Projected normal of texel (i, j), wrapped or clamped.
-    pub fn texel(&self, i: i32, j: i32) -> Vec2 {
-        let (w, h) = (self.params.width as i32, self.params.height as i32);
-        let (i, j) = (wrapped(i, w, self.params.wrap), wrapped(j, h, self.params.wrap));
-        let at = (j * w + i) as usize * self.params.normals.texel_bytes();
-        let b = &self.normals[at..at + self.params.normals.texel_bytes()];
-        match self.params.normals {
-            NormalsStorage::Snorm16 => {
-                let snorm = |k: usize| i16::from_le_bytes([b[k], b[k + 1]]) as f32 / 32767.0;
-                Vec2::new(snorm(0), snorm(2))
-            }
-            NormalsStorage::Unorm8 => Vec2::new(b[0] as f32, b[1] as f32) / 255.0 * 2.0 - 1.0,
-        }
-    }
-}
-
-/// Bakes one map. Errors: an option out of range, or a map that is too large.
+/// Bakes one map; reports the stages `lobes` and `error`.
+///
+/// # Errors
+/// `BadOption` for an option out of range, `LimitExceeded` for a map that is too large.
 pub fn bake(map: &NormalMap, options: &LobesOptions, progress: &dyn Progress) -> Result<BakedLobes> {
     options.check(map)?;
     let mut baked = without_levels(map, options);
     build_levels(map, options, &mut baked, progress);
+    baked.params.rim_roughness = baked.rim_roughness(BEYOND_RIM);
     measure(map, options, &mut baked, progress);
     Ok(baked)
 }
 
 /// A map's normals and parameters; lobes are to follow.
 pub(crate) fn without_levels(map: &NormalMap, options: &LobesOptions) -> BakedLobes {
-    let (storage, normals) = store_normals(map, options);
+    let (normals, words) = store_normals(map, options);
     let [low, high] = normal_range(map);
-    BakedLobes {
+    let mut baked = BakedLobes {
         params: LobesParams {
             width: map.width,
             height: map.height,
@@ -102,7 +65,7 @@ pub(crate) fn without_levels(map: &NormalMap, options: &LobesOptions) -> BakedLo
             filter: options.filter,
             intrinsic_roughness: options.roughness as f32,
             storage: options.storage,
-            normals: storage,
+            normals,
             merge: options.merge,
             seeds: options.seeds,
             lobes_per_cell: options.lobes_per_cell,
@@ -110,12 +73,15 @@ pub(crate) fn without_levels(map: &NormalMap, options: &LobesOptions) -> BakedLo
             normal_low: low.to_array(),
             normal_extent: (high - low).to_array(),
             levels: Vec::new(),
+            rim_roughness: 0.0,
             measured_roughness: options.roughness as f32,
             measured: Vec::new(),
         },
         lobes: Vec::new(),
-        normals,
-    }
+        normals: Vec::new(),
+    };
+    baked.normals = normal_pairs(&baked.params, &words);
+    baked
 }
 
 /// Levels of cells of doubling edge, up to so few cells that all of them are read for the whole map: one cell's lobes would
@@ -206,13 +172,76 @@ pub(crate) fn finest_parts(
     parts
 }
 
+/// A piece of an axis in which the map runs straight from one texel to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Segment {
+    /// Middle, in texels.
+    centre: f64,
+    /// Length, in texels.
+    length: f64,
+    /// Texels before and after; the same where the map is constant.
+    texels: [i64; 2],
+    /// Where the middle lies between the texels' centres.
+    fraction: f64,
+}
+
+/// Segments whose middles lie in `from … to` (whole texels) of an axis of `size` texels, one or two a texel.
+fn segments(from: u32, to: u32, size: u32, wrap: Wrap, filter: Filter, halves: bool) -> Vec<Segment> {
+    let mut out = Vec::new();
+    let constant = |centre: f64, length: f64, texel: i64| Segment { centre, length, texels: [texel; 2], fraction: 0.5 };
+    for i in from as i64..to as i64 {
+        let x = i as f64;
+        match (filter, halves) {
+            (Filter::Nearest, false) => out.push(constant(x + 0.5, 1.0, i)),
+            (Filter::Nearest, true) => out.extend([constant(x + 0.25, 0.5, i), constant(x + 0.75, 0.5, i)]),
+            (Filter::Linear, true) => {
+                out.push(Segment { centre: x + 0.25, length: 0.5, texels: [i - 1, i], fraction: 0.75 });
+                out.push(Segment { centre: x + 0.75, length: 0.5, texels: [i, i + 1], fraction: 0.25 });
+            }
+            // A clamped map is constant over the half texels at its edges.
+            (Filter::Linear, false) if i == 0 && wrap == Wrap::Clamp => out.push(constant(0.25, 0.5, 0)),
+            (Filter::Linear, false) => {
+                out.push(Segment { centre: x, length: 1.0, texels: [i - 1, i], fraction: 0.5 });
+            }
+        }
+    }
+    if filter == Filter::Linear && !halves && wrap == Wrap::Clamp && to == size {
+        out.push(constant(size as f64 - 0.25, 0.5, size as i64 - 1));
+    }
+    out
+}
+
+/// The seed of the box of two segments: the lobe of a box in which the filtered map is one bilinear patch, with the exact moments
+/// of positions and normals over it.
+///
+/// Tan et al. 2022, section 5.1.1, step 1, converts a texel to four Gaussians of σ_h = 1 / √(32 ln 2) at its normal. Here
+/// σ_h = edge / √12, and the patch's twist is a residual.
+fn seed(map: &NormalMap, x: &Segment, y: &Segment) -> Gaussian4 {
+    let s = |a: usize, b: usize| map.texel(x.texels[a], y.texels[b]);
+    let (s00, s10, s01, s11) = (s(0, 0), s(1, 0), s(0, 1), s(1, 1));
+    let (top, bottom) = (s00.lerp(s10, x.fraction), s01.lerp(s11, x.fraction));
+    let jacobian = DMat2::from_cols((s10 - s00).lerp(s11 - s01, y.fraction), bottom - top);
+    // s = mean + J d + twist · d_x d_y, and the product of two independent offsets has variance a² b² / 144.
+    let twist = s11 - s10 - s01 + s00;
+    let residual = DMat2::from_cols(twist * twist.x, twist * twist.y) * ((x.length * y.length).powi(2) / 144.0);
+    let positions = DMat2::from_diagonal(DVec2::new(x.length * x.length, y.length * y.length) / 12.0);
+    Gaussian4::of_surface(
+        x.length * y.length,
+        DVec2::new(x.centre, y.centre),
+        positions,
+        top.lerp(bottom, y.fraction),
+        jacobian,
+        residual,
+    )
+}
+
 fn cell_seeds(map: &NormalMap, options: &LobesOptions, grid: &LobeLevel, x: u32, y: u32) -> Vec<Gaussian4> {
     let segments = |cell: u32, size: u32| {
         let (from, to) = (cell * grid.cell_texels, ((cell + 1) * grid.cell_texels).min(size));
-        seeds::segments(from, to, size, map.wrap, options.filter, options.seeds == 4)
+        segments(from, to, size, map.wrap, options.filter, options.seeds == 4)
     };
     let (columns, rows) = (segments(x, map.width), segments(y, map.height));
-    rows.iter().flat_map(|row| columns.iter().map(|column| seeds::seed(map, column, row))).collect()
+    rows.iter().flat_map(|row| columns.iter().map(|column| seed(map, column, row))).collect()
 }
 
 fn children(below: &LobeLevel, cells: &[Vec<Gaussian4>], x: u32, y: u32) -> Vec<Gaussian4> {
@@ -248,7 +277,8 @@ fn normal_range(map: &NormalMap) -> [Vec2; 2] {
     [low, high]
 }
 
-fn store_normals(map: &NormalMap, options: &LobesOptions) -> (NormalsStorage, Vec<u8>) {
+/// How normals are stored, and the word of each texel.
+fn store_normals(map: &NormalMap, options: &LobesOptions) -> (NormalsStorage, Vec<u32>) {
     let unorm = |v: f32| ((v + 1.0) * 127.5).round().clamp(0.0, 255.0);
     let error: f64 = map.projected.iter().flatten().map(|v| ((unorm(*v) / 127.5 - 1.0 - v) as f64).powi(2)).sum();
     let rms = (error / (2 * map.projected.len()) as f64).sqrt();
@@ -257,13 +287,23 @@ fn store_normals(map: &NormalMap, options: &LobesOptions) -> (NormalsStorage, Ve
         NormalsChoice::Unorm8 => true,
         NormalsChoice::Snorm16 => false,
     };
-    let values = map.projected.iter().flatten();
+    let snorm = |v: f32| u32::from((v.clamp(-1.0, 1.0) * 32767.0).round() as i16 as u16);
+    let word = |[x, y]: [u32; 2]| x | y << 16;
     if small {
-        (NormalsStorage::Unorm8, values.map(|v| unorm(*v) as u8).collect())
+        let words = map.projected.iter().map(|s| word(s.map(|v| unorm(v) as u32)));
+        (NormalsStorage::Unorm8, words.collect())
     } else {
-        let snorm = |v: &f32| ((v.clamp(-1.0, 1.0) * 32767.0).round() as i16).to_le_bytes();
-        (NormalsStorage::Snorm16, values.flat_map(snorm).collect())
+        (NormalsStorage::Snorm16, map.projected.iter().map(|s| word(s.map(snorm))).collect())
     }
+}
+
+/// Each texel's word and that of the texel below it; zeros after the last where a buffer needs them.
+fn normal_pairs(params: &LobesParams, words: &[u32]) -> Vec<[u32; 2]> {
+    let row = |j: u32| &words[(j * params.width) as usize..][..params.width as usize];
+    let pairs = |j: u32| row(j).iter().zip(row(params.row_below(j))).map(|(texel, below)| [*texel, *below]);
+    let mut out: Vec<[u32; 2]> = (0..params.height).flat_map(pairs).collect();
+    out.resize(params.pair_count() as usize, [0; 2]);
+    out
 }
 
 /// Error over a few footprints a size, as the evaluator chooses levels.
@@ -304,4 +344,58 @@ pub(crate) fn measured_roughness(baked: &BakedLobes, options: &LobesOptions) -> 
 /// Footprints of a size that errors are measured over. Large ones differ less from place to place, and cost more.
 pub(crate) fn measured_footprints(sigma: f64, options: &LobesOptions) -> u32 {
     if sigma > LARGE_SIGMA { options.footprints.div_ceil(2) } else { options.footprints }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn segments_cover_the_axis_once() {
+        for wrap in [Wrap::Repeat, Wrap::Clamp] {
+            for filter in [Filter::Linear, Filter::Nearest] {
+                for halves in [false, true] {
+                    let mut total = 0.0;
+                    for (from, to) in [(0, 4), (4, 7)] {
+                        total += segments(from, to, 7, wrap, filter, halves).iter().map(|s| s.length).sum::<f64>();
+                    }
+                    assert_eq!(total, 7.0, "{wrap:?} {filter:?} {halves}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_seed_has_the_moments_of_the_filtered_map_over_its_box() {
+        let map = NormalMap {
+            width: 3,
+            height: 2,
+            wrap: Wrap::Repeat,
+            projected: vec![[0.1, 0.2], [-0.3, 0.5], [0.0, 0.1], [0.4, -0.2], [0.3, 0.3], [-0.1, 0.0]],
+        };
+        for halves in [false, true] {
+            let xs = segments(0, 3, 3, Wrap::Repeat, Filter::Linear, halves);
+            let ys = segments(0, 2, 2, Wrap::Repeat, Filter::Linear, halves);
+            for (x, y) in [(&xs[0], &ys[1]), (&xs[2], &ys[0])] {
+                let seed = seed(&map, x, y);
+                let (mut mean, mut square, mut cross) = (DVec2::ZERO, 0.0, DVec2::ZERO);
+                const N: usize = 64;
+                for b in 0..N {
+                    for a in 0..N {
+                        let d = DVec2::new(a as f64 + 0.5, b as f64 + 0.5) / N as f64 - 0.5;
+                        let d = d * DVec2::new(x.length, y.length);
+                        let s = map.bilinear(DVec2::new(x.centre, y.centre) + d).0;
+                        mean += s;
+                        square += (s.x - seed.mean[2]) * (s.y - seed.mean[3]);
+                        cross += d * s.x;
+                    }
+                }
+                let n = (N * N) as f64;
+                assert!((mean / n - seed.normal()).length() < 1e-12);
+                assert!((square / n - seed.covariance[8]).abs() < 1e-4);
+                assert!((cross.x / n - seed.covariance[2]).abs() < 1e-4);
+                assert!((cross.y / n - seed.covariance[5]).abs() < 1e-4);
+            }
+        }
+    }
 }

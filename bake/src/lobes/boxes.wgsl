@@ -1,24 +1,38 @@
 // The filtered map, and boxes of it under a footprint: of a texel or less, one bilinear patch each. Tan et al. 2022, sections
-// 5.1.2 and 5.2; twin of glint-bake-core lobes/query.rs, whose boxes are lobes like others. Here what boxes of one size have in
-// common is found once, since most of what a picture costs are boxes. Accessors: see glint_lobes.wgsl.
+// 5.1.2 and 5.2. Twin of boxes.rs, whose boxes are lobes like others. Here what boxes of one size have in common is found once, since
+// most of what a picture costs are boxes. Accessors: those of lobes::eval.
 
 #import lobes::eval
 
 // A footprint that boxes of one size are seen by. What is the same for all of them is here: a box costs little more than the
 // look-up of its patch.
 struct GlintLobesBoxFilter {
-    // The axes over the deviations of the footprint and a box together.
+    // The axes over the standard deviations of the footprint and a box together.
     along: vec2f,
     across: vec2f,
-    // The axes times the deviations of what a footprint sees of a box around its centre, in the normals' stored numbers.
+    // The axes times the standard deviations of what a footprint sees of a box around its centre, in the normals' stored numbers.
     within_along: vec2f,
     within_across: vec2f,
-    // How far a box's mean is drawn to the footprint, in those deviations.
+    // How far a box's mean is drawn to the footprint, in standard deviations of what it sees of the box.
     pull: vec2f,
     // Share of a box at the footprint's centre.
     share: f32,
-    // Deviation of normals over a box's twist, in the normals' stored numbers.
+    // Standard deviation of normals over a box's twist, in the normals' stored numbers.
     twist: f32,
+}
+
+// Stored numbers of a texel's normal.
+fn glint_lobes_codes(word: u32) -> vec2f {
+    return vec2f(f32(bitcast<i32>(word << 16u) >> 16u), f32(bitcast<i32>(word) >> 16u));
+}
+
+// A bilinear patch from its texels, at the fraction `f`.
+fn glint_lobes_bilinear(s00: vec2f, s10: vec2f, s01: vec2f, s11: vec2f, f: vec2f) -> GlintLobesPatch {
+    let top = s00 + (s10 - s00) * f.x;
+    let bottom = s01 + (s11 - s01) * f.x;
+    let twist = s11 - s10 - s01 + s00;
+    let along = s10 - s00 + twist * f.y;
+    return GlintLobesPatch(top + (bottom - top) * f.y, mat2x2f(along, bottom - top), twist);
 }
 
 // A texel of the map that lies less than the map's size beyond its edges; wrapped or clamped.
@@ -33,11 +47,6 @@ fn glint_lobes_normals_scale(map: GlintLobesMap) -> vec2f {
     return select(vec2f(2.0 / 255.0, -1.0), vec2f(1.0 / 32767.0, 0.0), map.normals == GLINT_LOBES_SNORM16);
 }
 
-// Stored numbers of a texel's normal.
-fn glint_lobes_codes(word: u32) -> vec2f {
-    return vec2f(f32(bitcast<i32>(word << 16u) >> 16u), f32(bitcast<i32>(word) >> 16u));
-}
-
 // Projected normal of texel (i, j), which lies less than the map's size beyond its edges.
 fn glint_lobes_texel(map: GlintLobesMap, i: i32, j: i32) -> vec2f {
     let at = glint_lobes_wrapped(map, vec2i(i, j));
@@ -45,13 +54,10 @@ fn glint_lobes_texel(map: GlintLobesMap, i: i32, j: i32) -> vec2f {
     return glint_lobes_codes(glint_lobes_normals_pair(u32(at.y) * map.width + u32(at.x)).x) * scale.x + scale.y;
 }
 
-// A bilinear patch from its texels, at the fraction `f`.
-fn glint_lobes_bilinear(s00: vec2f, s10: vec2f, s01: vec2f, s11: vec2f, f: vec2f) -> GlintLobesPatch {
-    let top = s00 + (s10 - s00) * f.x;
-    let bottom = s01 + (s11 - s01) * f.x;
-    let twist = s11 - s10 - s01 + s00;
-    let along = s10 - s00 + twist * f.y;
-    return GlintLobesPatch(top + (bottom - top) * f.y, mat2x2f(along, bottom - top), twist);
+// Stored numbers of a texel in xy and of the one below it in zw; `again` takes the texel for both.
+fn glint_lobes_pair(index: u32, again: bool) -> vec4f {
+    let pair = glint_lobes_normals_pair(index);
+    return vec4f(glint_lobes_codes(pair.x), glint_lobes_codes(select(pair.y, pair.x, again)));
 }
 
 // The bilinear patch from texel `at` on, which lies less than the map's size beyond its edges, at the fraction `f`. A nearest
@@ -60,17 +66,11 @@ fn glint_lobes_patch(map: GlintLobesMap, at: vec2i, f: vec2f) -> GlintLobesPatch
     let place = glint_lobes_wrapped(map, at);
     let beside = glint_lobes_wrapped(map, at + vec2i(1, 0)).x;
     let row = u32(place.y) * map.width;
-    let left = glint_lobes_normals_pair(row + u32(place.x));
-    let right = glint_lobes_normals_pair(row + u32(beside));
     // Above the first row of a clamped map lies that row once more.
     let again = map.wrap == GLINT_WRAP_CLAMP && at.y < 0;
-    let codes = glint_lobes_bilinear(
-        glint_lobes_codes(left.x),
-        glint_lobes_codes(right.x),
-        glint_lobes_codes(select(left.y, left.x, again)),
-        glint_lobes_codes(select(right.y, right.x, again)),
-        f,
-    );
+    let left = glint_lobes_pair(row + u32(place.x), again);
+    let right = glint_lobes_pair(row + u32(beside), again);
+    let codes = glint_lobes_bilinear(left.xy, right.xy, left.zw, right.zw, f);
     let scale = glint_lobes_normals_scale(map);
     let slope = select(scale.x, 0.0, map.nearest == 1u);
     return GlintLobesPatch(codes.normal * scale.x + scale.y, codes.jacobian * slope, codes.twist * slope);
@@ -84,20 +84,26 @@ fn glint_lobes_surface_at(map: GlintLobesMap, u: vec2f) -> GlintLobesPatch {
     return glint_lobes_patch(map, vec2i(cell), select(p - cell, vec2f(0.0), nearest));
 }
 
+// Texels from one copy of the map to the next. Beyond a clamped sample of a surface lies its edge, with no copies.
+fn glint_lobes_repeat(map: GlintLobesMap) -> vec2f {
+    let none = map.wrap == GLINT_WRAP_CLAMP && map.step_texels != 0u;
+    return select(vec2f(f32(map.width), f32(map.height)), vec2f(0.0), none);
+}
+
 fn glint_lobes_box_filter(map: GlintLobesMap, frame: GlintLobesFrame, edge: f32) -> GlintLobesBoxFilter {
     let scale = glint_lobes_normals_scale(map).x;
     // Variance of a box's places along any axis.
     let variance = edge * edge / 12.0;
-    let deviation = sqrt(variance);
+    let sigma = sqrt(variance);
     let wide = inverseSqrt(vec2f(frame.major * frame.major, frame.minor * frame.minor) + variance);
     let across = vec2f(-frame.axis.y, frame.axis.x);
-    let within = deviation * scale * vec2f(frame.major, frame.minor) * wide;
+    let within = sigma * scale * vec2f(frame.major, frame.minor) * wide;
     return GlintLobesBoxFilter(
         frame.axis * wide.x,
         across * wide.y,
         frame.axis * within.x,
         across * within.y,
-        deviation / vec2f(frame.major, frame.minor),
+        sigma / vec2f(frame.major, frame.minor),
         edge * edge * frame.major * frame.minor * wide.x * wide.y,
         variance * scale,
     );
@@ -137,24 +143,11 @@ fn glint_lobes_box(
     let peak = inverseSqrt(max(xx * yy - xy * xy, intrinsic * max(xx, yy)));
     let e = query.s - mean;
     let far = (yy * e.x * e.x - 2.0 * xy * e.x * e.y + xx * e.y * e.y) * peak * peak;
-    let to_rim = 1.0 - length(mean);
-    let inside = !glint_lobes_rim || (to_rim > 0.0 && to_rim * to_rim > 25.0 * (max(xx, yy) + abs(xy)));
+    let cut = glint_lobes_near_rim(mean, vec3f(xx, xy, yy));
     let near = far <= GLINT_LOBES_CUT;
     return vec3f(
-        select(0.0, share * peak * exp(-0.5 * far), near && inside), share, select(0.0, 1.0, near && !inside),
+        select(0.0, share * peak * exp(-0.5 * far), near && !cut), share, select(0.0, 1.0, near && cut),
     );
-}
-
-// Stored numbers of a texel in xy and of the one below it in zw; `again` takes the texel for both.
-fn glint_lobes_pair(index: u32, again: bool) -> vec4f {
-    let pair = glint_lobes_normals_pair(index);
-    return vec4f(glint_lobes_codes(pair.x), glint_lobes_codes(select(pair.y, pair.x, again)));
-}
-
-// Texels from one copy of the map to the next. Beyond a clamped sample of a surface lies its edge, with no copies.
-fn glint_lobes_repeat(map: GlintLobesMap) -> vec2f {
-    let none = map.wrap == GLINT_WRAP_CLAMP && map.step_texels != 0u;
-    return select(vec2f(f32(map.width), f32(map.height)), vec2f(0.0), none);
 }
 
 // Density of those boxes that need the mass inside the disk: few, and it takes long. The loops over boxes end where one does.

@@ -1,14 +1,14 @@
 // MIP-mapped position-normal lobes: the distribution of normals (P-NDF) that a footprint sees on a map.
 // Tan et al. 2022, "Real-Time Microstructure Rendering with MIP-mapped Normal Map Samples", sections 5.1.2 and 5.2, Eq. 6 and 9.
-// Twin of glint-bake-core lobes/{eval,query,span,quantise}.rs, where deviations from the paper are derived. The twin lists the
-// lobes that a footprint sees; here their densities at one normal are summed on the way, in the same order.
+// Twin of eval.rs, where deviations from the paper are derived. The twin hands lobes on for any normal; here each has the density at
+// the normal that is asked for.
 //
 // Accessors that the including program defines:
-//   fn glint_lobes_level(index: u32) -> GlintLobesLevel     level of the section LOPP, 0 the finest
+//   fn glint_lobes_level(index: u32) -> GlintLobesLevel     level of the section LOUB, 0 the finest
 //   fn glint_lobes_words(index: u32) -> vec4u               16 bytes of the section LOBE: a lobe if packed, else half of one
 //   fn glint_lobes_lobe(map: GlintLobesMap, level: GlintLobesLevel, index: u32) -> GlintLobe
-//                                                           a lobe by its index among all: by glint_lobes_packed.wgsl or
-//                                                           glint_lobes_half.wgsl, as the pack stores them
+//                                                           a lobe by its index among all: by lobes::packed or lobes::half,
+//                                                           as the pack stores them
 //   fn glint_lobes_normals_pair(index: u32) -> vec2u        a texel of the section LONM, row by row, and the one below it as the
 //                                                           map is wrapped: stored numbers, sign-extended to 16 bits, x in
 //                                                           the lower half
@@ -36,7 +36,7 @@ const GLINT_WRAP_CLAMP: u32 = 1u;
 // nothing lies there may set this to false before it asks; some devices run what is left out, a sum over strips, for every cell.
 var<private> glint_lobes_rim: bool = true;
 
-// A map and how its lobes are stored, from the section LOPP.
+// A map and how its lobes are stored, from the section LOUB.
 struct GlintLobesMap {
     // Size in texels.
     width: u32,
@@ -68,34 +68,14 @@ struct GlintLobesLevel {
     weight_scale: f32,
     // |ds/du| per texel that a stored 1.0 stands for.
     jacobian_scale: f32,
-    // Smallest deviation of positions, and log2 of largest over smallest.
+    // Smallest standard deviation of positions in texels, and log2 of largest over smallest.
     position_sigma: f32,
     position_log_ratio: f32,
-    // The same of the normals' residual.
+    // Smallest standard deviation of the normals' residual, and log2 of largest over smallest.
     residual_sigma: f32,
     residual_log_ratio: f32,
     // What stored positions are relative to: the cell's edge, cut to the map.
     extent: vec2f,
-}
-
-// Choice between speed and accuracy. Deviations are those of the footprint, edges those of cells.
-struct GlintLobesSettings {
-    // Minor deviation over a level's edge from which on the level is read, alone at first.
-    cell_sigmas: f32,
-    // Minor deviation over the finest edge up to which boxes alone are read, and from which on none are.
-    boxes_until: f32,
-    cells_from: f32,
-    // Edge of the largest boxes over the minor deviation.
-    box_sigmas: f32,
-    // Cells a level, and boxes, that a footprint visits, about.
-    max_cells: f32,
-    max_boxes: f32,
-    // Footprints reach this far, in standard deviations.
-    reach: f32,
-    // The same where cells are read, whose lobes reach beyond them.
-    cells_reach: f32,
-    // Part of the way from a stored level to the next over which both are read, above 0 to 1.
-    blend: f32,
 }
 
 // A footprint by its principal axes, in texels.
@@ -110,7 +90,7 @@ struct GlintLobesFrame {
 // A footprint and the projected normal at which its density is asked for.
 struct GlintLobesQuery {
     frame: GlintLobesFrame,
-    // The axes over their deviations: what turns an offset into standard deviations. Zero sees every place alike.
+    // The axes over their standard deviations: what turns an offset into standard deviations. Zero sees every place alike.
     along: vec2f,
     across: vec2f,
     s: vec2f,
@@ -125,8 +105,8 @@ struct GlintLobe {
     position: vec2f,
     // Mean projected normal.
     normal: vec2f,
-    // Factor of the covariance of positions F F^T, lower triangular: xx, yx, yy.
-    spread: vec3f,
+    // Lower triangular factor F of the covariance of positions F F^T, in texels: xx, yx, yy.
+    factor: vec3f,
     // ds/du per texel.
     jacobian: mat2x2f,
     // Residual covariance of normals: xx, xy, yy.
@@ -164,20 +144,6 @@ struct GlintLobesPatch {
     twist: vec2f,
 }
 
-fn glint_lobes_default_settings() -> GlintLobesSettings {
-    return GlintLobesSettings(0.7, 0.25, 0.375, 0.25, 32.0, 1024.0, 3.0, 3.0, 0.5);
-}
-
-// Few lobes, for pictures: about two cells of the map's lobes, or some twenty boxes, a footprint.
-fn glint_lobes_realtime_settings() -> GlintLobesSettings {
-    return GlintLobesSettings(0.18, 0.22, 0.24, 1.1, 2.0, 48.0, 1.8, 1.1, 0.15);
-}
-
-// x y' - y x'.
-fn glint_cross2(a: vec2f, b: vec2f) -> f32 {
-    return a.x * b.y - a.y * b.x;
-}
-
 // Axes of a footprint.
 fn glint_lobes_frame(footprint: GlintFootprint) -> GlintLobesFrame {
     let axes = glint_principal(footprint);
@@ -186,7 +152,7 @@ fn glint_lobes_frame(footprint: GlintFootprint) -> GlintLobesFrame {
     );
 }
 
-// The same, its centre moved by whole periods into the map, where positions have the most digits.
+// Axes of a footprint, its centre moved by whole periods into the map, where positions have the most digits.
 fn glint_lobes_frame_in_map(map: GlintLobesMap, footprint: GlintFootprint) -> GlintLobesFrame {
     let size = vec2f(f32(map.width), f32(map.height));
     let limit = vec2f(1.0e7);
@@ -233,15 +199,33 @@ fn glint_lobes_ellipse_span(ellipse: GlintLobesEllipse, low: f32, high: f32) -> 
     return select(vec2f(1.0, 0.0), span, y0 <= y1);
 }
 
-// Lower triangular factor F of a covariance F F^T: xx, yx, yy.
+// First and last box of a row of boxes of `edge` texels, the row's low edge at `y`, under an ellipse; boxes begin at `origin`.
+fn glint_lobes_row(ellipse: GlintLobesEllipse, origin: f32, edge: f32, y: f32) -> vec2i {
+    let span = glint_lobes_ellipse_span(ellipse, y, y + edge);
+    if !(span.x <= span.y) {
+        return vec2i(1, 0);
+    }
+    let ends = vec2i(floor((span - origin) / edge));
+    return vec2i(ends.x, min(ends.y, ends.x + i32(GLINT_LOBES_MOST_STEPS)));
+}
+
+// Lower triangular factor F of a covariance F F^T of these standard deviations: xx, yx, yy.
 fn glint_lobes_factor(sigmas: vec2f, correlation: f32) -> vec3f {
     let rest = sqrt(max(1.0 - correlation * correlation, 0.0));
     return vec3f(sigmas.x, correlation * sigmas.y, rest * sigmas.y);
 }
 
-// Covariance of two deviations: xx, xy, yy.
+// Covariance of these standard deviations: xx, xy, yy.
 fn glint_lobes_covariance(sigmas: vec2f, correlation: f32) -> vec3f {
     return vec3f(sigmas.x * sigmas.x, correlation * sigmas.x * sigmas.y, sigmas.y * sigmas.y);
+}
+
+// Whether a Gaussian may have mass beyond the rim of the disk: five standard deviations from it there is less than 4e-6. A row's sum
+// stands for the largest variance.
+fn glint_lobes_near_rim(mean: vec2f, covariance: vec3f) -> bool {
+    let to_rim = 1.0 - length(mean);
+    let largest = max(covariance.x, covariance.z) + abs(covariance.y);
+    return glint_lobes_rim && !(to_rim > 0.0 && to_rim * to_rim > 25.0 * largest);
 }
 
 // Mass inside the disk of a Gaussian that is wide or near the rim: a sum over strips across the line from the disk's middle
@@ -277,20 +261,40 @@ fn glint_lobes_inside_disk(mean: vec2f, covariance: vec3f) -> f32 {
     return max(0.25 * sum, 1.0e-3);
 }
 
+// A Gaussian over the disk whose covariance (xx, xy, yy) has at least the eigenvalue `intrinsic`.
+fn glint_lobes_seen_gaussian(
+    query: GlintLobesQuery,
+    share: f32,
+    mean: vec2f,
+    covariance: vec3f,
+    intrinsic: f32,
+) -> GlintSeenLobe {
+    let xx = covariance.x;
+    let xy = covariance.y;
+    let yy = covariance.z;
+    // Rounding may take the determinant of a long thin Gaussian below what it can be.
+    let peak = inverseSqrt(max(xx * yy - xy * xy, intrinsic * max(xx, yy)));
+    let d = query.s - mean;
+    let far = (yy * d.x * d.x - 2.0 * xy * d.x * d.y + xx * d.y * d.y) * peak * peak;
+    let near = far <= GLINT_LOBES_CUT;
+    let density = select(0.0, share * peak * exp(-0.5 * far) * GLINT_LOBES_PEAK, near);
+    return GlintSeenLobe(share, density, near && glint_lobes_near_rim(mean, covariance), mean, covariance);
+}
+
 // What `lobe` gives to a footprint whose centre lies `d` from the lobe's position (Eq. 6).
 fn glint_lobes_seen(query: GlintLobesQuery, lobe: GlintLobe, d: vec2f) -> GlintSeenLobe {
-    // Columns of the spread's factor, in standard deviations of the footprint, and what they are in normals.
+    // Columns of the factor of positions, in standard deviations of the footprint, and what they are in normals.
     let p = vec2f(
-        query.along.x * lobe.spread.x + query.along.y * lobe.spread.y, query.along.y * lobe.spread.z,
+        query.along.x * lobe.factor.x + query.along.y * lobe.factor.y, query.along.y * lobe.factor.z,
     );
     let q = vec2f(
-        query.across.x * lobe.spread.x + query.across.y * lobe.spread.y, query.across.y * lobe.spread.z,
+        query.across.x * lobe.factor.x + query.across.y * lobe.factor.y, query.across.y * lobe.factor.z,
     );
-    let a = lobe.jacobian[0] * lobe.spread.x + lobe.jacobian[1] * lobe.spread.y;
-    let b = lobe.jacobian[1] * lobe.spread.z;
+    let a = lobe.jacobian[0] * lobe.factor.x + lobe.jacobian[1] * lobe.factor.y;
+    let b = lobe.jacobian[1] * lobe.factor.z;
     let w = vec2f(dot(query.along, d), dot(query.across, d));
     // M = I + F^T S^-1 F is I + p p^T + q q^T; det M and adj M are sums of squares and outer products.
-    let area = glint_cross2(p, q);
+    let area = p.x * q.y - p.y * q.x;
     let det = 1.0 + dot(p, p) + dot(q, q) + area * area;
     let root = inverseSqrt(det);
     let part = root * root;
@@ -305,27 +309,7 @@ fn glint_lobes_seen(query: GlintLobesQuery, lobe: GlintLobe, d: vec2f) -> GlintS
     let yy = intrinsic + lobe.residual.z + (a.y * a.y + b.y * b.y + u.y * u.y + v.y * v.y) * part;
     let mean = lobe.normal + a * toward.x + b * toward.y;
     let share = lobe.weight * exp(-0.5 * distance) * root;
-    // Rounding may take the determinant of a long thin Gaussian below what it can be.
-    let peak = inverseSqrt(max(xx * yy - xy * xy, intrinsic * max(xx, yy)));
-    let e = query.s - mean;
-    let far = (yy * e.x * e.x - 2.0 * xy * e.x * e.y + xx * e.y * e.y) * peak * peak;
-    let near = far <= GLINT_LOBES_CUT;
-    let density = select(0.0, share * peak * exp(-0.5 * far) * GLINT_LOBES_PEAK, near);
-    // Five standard deviations from the rim there is less than 4e-6 beyond it. The twin takes the trace for the largest
-    // variance, here it is a row's sum; both leave more lobes to a sum that comes to the same.
-    let to_rim = 1.0 - length(mean);
-    let inside = !glint_lobes_rim || (to_rim > 0.0 && to_rim * to_rim > 25.0 * (max(xx, yy) + abs(xy)));
-    return GlintSeenLobe(share, density, near && !inside, mean, vec3f(xx, xy, yy));
-}
-
-// First and last box of a row of boxes of `edge` texels, the row's low edge at `y`, under an ellipse; boxes begin at `origin`.
-fn glint_lobes_row(ellipse: GlintLobesEllipse, origin: f32, edge: f32, y: f32) -> vec2i {
-    let span = glint_lobes_ellipse_span(ellipse, y, y + edge);
-    if !(span.x <= span.y) {
-        return vec2i(1, 0);
-    }
-    let ends = vec2i(floor((span - origin) / edge));
-    return vec2i(ends.x, min(ends.y, ends.x + i32(GLINT_LOBES_MOST_STEPS)));
+    return glint_lobes_seen_gaussian(query, share, mean, vec3f(xx, xy, yy), intrinsic);
 }
 
 // Lobe of a box of the filtered map, `size` texels wide and high: exact moments.

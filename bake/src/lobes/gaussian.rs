@@ -5,11 +5,11 @@
 use glam::{DMat2, DVec2};
 
 /// Entries of a symmetric 4 × 4 matrix by rows of the upper triangle: xx xy xz xw yy yz yw zz zw ww.
-pub type Symmetric4 = [f64; 10];
+pub(crate) type Symmetric4 = [f64; 10];
 
 /// A weighted Gaussian; axes are u, v, s_x, s_y. The intrinsic roughness is not in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gaussian4 {
+pub(crate) struct Gaussian4 {
     /// Weight in texels.
     pub weight: f64,
     /// Mean.
@@ -19,26 +19,27 @@ pub struct Gaussian4 {
 }
 
 impl Gaussian4 {
-    /// The surface s = `normal` + `jacobian` · (u − `position`) + residual over positions of covariance `spread`.
-    pub fn of_surface(
+    /// The surface s = `normal` + `jacobian` · (u − `position`) + rest over positions u of covariance `positions`; the rest has the
+    /// covariance `residual`.
+    pub(crate) fn of_surface(
         weight: f64,
         position: DVec2,
-        spread: DMat2,
+        positions: DMat2,
         normal: DVec2,
         jacobian: DMat2,
         residual: DMat2,
     ) -> Gaussian4 {
-        let cross = jacobian * spread;
+        let cross = jacobian * positions;
         let normals = cross * jacobian.transpose() + residual;
         Gaussian4 {
             weight,
             mean: [position.x, position.y, normal.x, normal.y],
             covariance: [
-                spread.x_axis.x,
-                spread.x_axis.y,
+                positions.x_axis.x,
+                positions.x_axis.y,
                 cross.x_axis.x,
                 cross.x_axis.y,
-                spread.y_axis.y,
+                positions.y_axis.y,
                 cross.y_axis.x,
                 cross.y_axis.y,
                 normals.x_axis.x,
@@ -49,48 +50,48 @@ impl Gaussian4 {
     }
 
     /// Mean position.
-    pub fn position(&self) -> DVec2 {
+    pub(crate) fn position(&self) -> DVec2 {
         DVec2::new(self.mean[0], self.mean[1])
     }
 
     /// Mean normal.
-    pub fn normal(&self) -> DVec2 {
+    pub(crate) fn normal(&self) -> DVec2 {
         DVec2::new(self.mean[2], self.mean[3])
     }
 
     /// Covariance of positions.
-    pub fn spread(&self) -> DMat2 {
+    pub(crate) fn position_covariance(&self) -> DMat2 {
         let c = &self.covariance;
         DMat2::from_cols(DVec2::new(c[0], c[1]), DVec2::new(c[1], c[4]))
     }
 
     /// Covariance of normals.
-    pub fn normals(&self) -> DMat2 {
+    pub(crate) fn normal_covariance(&self) -> DMat2 {
         let c = &self.covariance;
         DMat2::from_cols(DVec2::new(c[7], c[8]), DVec2::new(c[8], c[9]))
     }
 
     /// Covariance of normals (rows) with positions (columns).
-    pub fn cross(&self) -> DMat2 {
+    fn cross_covariance(&self) -> DMat2 {
         let c = &self.covariance;
         DMat2::from_cols(DVec2::new(c[2], c[3]), DVec2::new(c[5], c[6]))
     }
 
     /// Slope of the regression of normals on positions: the Jacobian ∂s/∂u of the lobe.
-    pub fn jacobian(&self) -> DMat2 {
-        let spread = self.spread();
-        if spread.determinant() > 0.0 { self.cross() * spread.inverse() } else { DMat2::ZERO }
+    pub(crate) fn jacobian(&self) -> DMat2 {
+        let positions = self.position_covariance();
+        if positions.determinant() > 0.0 { self.cross_covariance() * positions.inverse() } else { DMat2::ZERO }
     }
 
-    /// What a Jacobian over positions of covariance `spread` leaves of the normals' covariance; may be indefinite by
+    /// What a Jacobian over positions of covariance `positions` leaves of the normals' covariance; may be indefinite by
     /// rounding, or where either is not this lobe's own.
-    pub fn residual(&self, jacobian: DMat2, spread: DMat2) -> DMat2 {
-        self.normals() - jacobian * spread * jacobian.transpose()
+    pub(crate) fn residual(&self, jacobian: DMat2, positions: DMat2) -> DMat2 {
+        self.normal_covariance() - jacobian * positions * jacobian.transpose()
     }
 }
 
 /// Sum of weighted Gaussians by their moments about a fixed origin near them.
-pub struct Moments {
+pub(crate) struct Moments {
     origin: [f64; 4],
     weight: f64,
     first: [f64; 4],
@@ -99,12 +100,12 @@ pub struct Moments {
 
 impl Moments {
     /// No Gaussians yet; `origin` is near their means, for digits.
-    pub fn about(origin: [f64; 4]) -> Moments {
+    pub(crate) fn about(origin: [f64; 4]) -> Moments {
         Moments { origin, weight: 0.0, first: [0.0; 4], second: [0.0; 10] }
     }
 
     /// Adds one.
-    pub fn add(&mut self, g: &Gaussian4) {
+    pub(crate) fn add(&mut self, g: &Gaussian4) {
         let d: [f64; 4] = std::array::from_fn(|k| g.mean[k] - self.origin[k]);
         self.weight += g.weight;
         for k in 0..4 {
@@ -120,7 +121,7 @@ impl Moments {
     }
 
     /// The Gaussian of the same weight, mean and covariance; None when nothing has weight.
-    pub fn gaussian(&self) -> Option<Gaussian4> {
+    pub(crate) fn gaussian(&self) -> Option<Gaussian4> {
         if self.weight <= 0.0 {
             return None;
         }
@@ -139,7 +140,7 @@ impl Moments {
 }
 
 /// Moment matching of two: the Gaussian of the same weight, mean and covariance as both together.
-pub fn merged(a: &Gaussian4, b: &Gaussian4) -> Gaussian4 {
+pub(crate) fn merged(a: &Gaussian4, b: &Gaussian4) -> Gaussian4 {
     let weight = a.weight + b.weight;
     let (p, q) = (a.weight / weight, b.weight / weight);
     let d: [f64; 4] = std::array::from_fn(|k| b.mean[k] - a.mean[k]);
@@ -155,7 +156,7 @@ pub fn merged(a: &Gaussian4, b: &Gaussian4) -> Gaussian4 {
 }
 
 /// Determinant by the 2 × 2 minors of the upper and the lower two rows.
-pub fn determinant(c: &Symmetric4) -> f64 {
+pub(crate) fn determinant(c: &Symmetric4) -> f64 {
     let [xx, xy, xz, xw, yy, yz, yw, zz, zw, ww] = *c;
     // Minors of rows x, y and of rows z, w.
     let (a01, a02, a03) = (xx * yy - xy * xy, xx * yz - xz * xy, xx * yw - xw * xy);
@@ -186,7 +187,7 @@ mod tests {
         let jacobian = g.jacobian();
         assert!((jacobian.x_axis - DVec2::new(0.1, 0.03)).length() < 1e-12);
         assert!((jacobian.y_axis - DVec2::new(-0.2, 0.05)).length() < 1e-12);
-        let residual = g.residual(jacobian, g.spread());
+        let residual = g.residual(jacobian, g.position_covariance());
         assert!((residual.x_axis - DVec2::new(0.01, 0.001)).length() < 1e-12);
     }
 
@@ -207,9 +208,9 @@ mod tests {
     fn determinant_of_a_block_matrix_and_of_a_product() {
         let c = [2.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 5.0, 1.0, 7.0];
         assert!((determinant(&c) - 6.0 * 34.0).abs() < 1e-12);
-        // Schur: det = det(spread) · det(residual).
+        // Schur: det = det(positions) · det(residual).
         let g = sample(0.3);
-        let expected = g.spread().determinant() * (0.01 * 0.02 - 1e-6);
+        let expected = g.position_covariance().determinant() * (0.01 * 0.02 - 1e-6);
         assert!((determinant(&g.covariance) - expected).abs() < 1e-15, "{}", determinant(&g.covariance));
     }
 }

@@ -1,5 +1,5 @@
-// Lobes of 32 bytes: one of the two ways that a pack stores them, for glint_lobes.wgsl. Twin of glint-bake-core
-// lobes/quantise.rs; the record is that of FORMAT.md, section LOBE.
+// Lobes of 32 bytes: one of the two ways that a pack stores them, for lobes::eval. Twin of half.rs; the record is that of FORMAT.md,
+// section LOBE.
 
 #import lobes::eval
 

@@ -1,5 +1,5 @@
-// Lobes of 16 bytes: one of the two ways that a pack stores them, for glint_lobes.wgsl. Twin of glint-bake-core
-// lobes/quantise.rs; the record is that of FORMAT.md, section LOBE.
+// Lobes of 16 bytes: one of the two ways that a pack stores them, for lobes::eval. Twin of packed.rs; the record is that of FORMAT.md,
+// section LOBE.
 
 #import lobes::eval
 
@@ -8,7 +8,7 @@ fn glint_lobes_bytes(word: u32) -> vec4f {
     return vec4f((vec4u(word) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(0xffu));
 }
 
-// The same, signed.
+// The bytes of a word, the lowest first, with signs.
 fn glint_lobes_signed_bytes(word: u32) -> vec4f {
     return vec4f((vec4i(bitcast<i32>(word)) << vec4u(24u, 16u, 8u, 0u)) >> vec4u(24u));
 }
@@ -27,13 +27,13 @@ fn glint_lobes_lobe(map: GlintLobesMap, level: GlintLobesLevel, index: u32) -> G
     let sigmas = level.position_sigma * exp2(codes.xy * (level.position_log_ratio * (1.0 / 255.0)));
     // Code 0 is no residual, 1 to 255 are its logarithm.
     let place = (codes.zw - 1.0) * (level.residual_log_ratio * (1.0 / 254.0));
-    let residual = select(vec2f(0.0), level.residual_sigma * exp2(place), codes.zw > vec2f(0.0));
+    let rest = select(vec2f(0.0), level.residual_sigma * exp2(place), codes.zw > vec2f(0.0));
     return GlintLobe(
         level.weight_scale * root * root,
         position * level.extent,
         map.normal_low + normal * map.normal_extent,
         glint_lobes_factor(sigmas, correlation.x),
         mat2x2f(jacobian.xy, jacobian.zw),
-        glint_lobes_covariance(residual, correlation.y),
+        glint_lobes_covariance(rest, correlation.y),
     );
 }

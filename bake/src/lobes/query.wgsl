@@ -1,6 +1,5 @@
 // Which lobes a footprint sees on the repeated map: boxes of the map, cells of the stored levels, or all of the last one, and the
-// mixture of two levels. Tan et al. 2022, section 5.2, Eq. 9; twin of glint-bake-core lobes/query.rs. Accessors: see
-// glint_lobes.wgsl.
+// mixture of two levels. Tan et al. 2022, section 5.2, Eq. 9. Twin of query.rs. Accessors: those of lobes::eval.
 
 #import lobes::boxes
 
@@ -8,6 +7,28 @@
 const GLINT_LOBES_LEAST_SHARE: f32 = 1.0e-30;
 // Cells a footprint may visit, over pi and less h^2 (see glint_lobes_lod), at least.
 const GLINT_LOBES_LEAST_BUDGET: f32 = 0.05;
+
+// Choice between speed and accuracy. Standard deviations are those of the footprint, edges those of cells and boxes, both in texels.
+struct GlintLobesSettings {
+    // Minor standard deviation over a stored level's edge from which on that level is read, at first without the next one.
+    cell_sigmas: f32,
+    // Minor standard deviation over the finest stored edge up to which boxes alone are read.
+    boxes_until: f32,
+    // Minor standard deviation over the finest stored edge from which on no boxes are read; above boxes_until.
+    cells_from: f32,
+    // Edge of the largest boxes over the minor standard deviation.
+    box_sigmas: f32,
+    // Cells of a level that a footprint visits, about.
+    max_cells: f32,
+    // Boxes that a footprint visits, about.
+    max_boxes: f32,
+    // Standard deviations that a footprint reaches where boxes are read.
+    reach: f32,
+    // Standard deviations that a footprint reaches where cells are read, whose lobes reach beyond them.
+    cells_reach: f32,
+    // Part of the way from a stored level to the next over which both are read, above 0 to 1.
+    blend: f32,
+}
 
 // Two neighbouring levels: 0 boxes of `box_edge` texels, then the stored ones, then the whole map.
 struct GlintLobesLod {
@@ -22,6 +43,43 @@ struct GlintLobesSlot {
     index: u32,
     // Copy of the map.
     copy: f32,
+}
+
+// Those that a bake measures its error with.
+fn glint_lobes_default() -> GlintLobesSettings {
+    return GlintLobesSettings(0.7, 0.25, 0.375, 0.25, 32.0, 1024.0, 3.0, 3.0, 0.5);
+}
+
+// Few lobes, for pictures: about two cells of the map's lobes, or some twenty boxes, a footprint.
+fn glint_lobes_realtime() -> GlintLobesSettings {
+    return GlintLobesSettings(0.18, 0.22, 0.24, 1.1, 2.0, 48.0, 1.8, 1.1, 0.15);
+}
+
+// The first of the cells of `edge` texels, `count` of them in every `length`, that touch what lies above `low`.
+fn glint_lobes_first_slot(low: f32, length: f32, edge: f32, count: u32) -> GlintLobesSlot {
+    let copy = floor(low / length);
+    return GlintLobesSlot(min(u32(max((low - copy * length) / edge, 0.0)), count - 1u), copy);
+}
+
+fn glint_lobes_next_slot(slot: GlintLobesSlot, count: u32) -> GlintLobesSlot {
+    if slot.index + 1u >= count {
+        return GlintLobesSlot(0u, slot.copy + 1.0);
+    }
+    return GlintLobesSlot(slot.index + 1u, slot.copy);
+}
+
+// Range of x of an ellipse over a row of cells that begins at `start`; all of the level's for `whole`, x > y if there are none.
+fn glint_lobes_cells_span(
+    ellipse: GlintLobesEllipse,
+    size: vec2f,
+    start: f32,
+    edge: f32,
+    row: GlintLobesSlot,
+    all: vec2f,
+    whole: bool,
+) -> vec2f {
+    let under = glint_lobes_ellipse_span(ellipse, start, min(start + edge, (row.copy + 1.0) * size.y));
+    return select(under, vec2f(ellipse.mean.x - all.x, ellipse.mean.x + all.x), whole);
 }
 
 // Edge of the boxes that a footprint is resolved in: a power of two, at most a texel.
@@ -74,19 +132,6 @@ fn glint_lobes_lod(map: GlintLobesMap, frame: GlintLobesFrame, settings: GlintLo
     return GlintLobesLod(u32(finer), fraction, box_edge);
 }
 
-// The first of the cells of `edge` texels, `count` of them in every `length`, that touch what lies above `low`.
-fn glint_lobes_first_slot(low: f32, length: f32, edge: f32, count: u32) -> GlintLobesSlot {
-    let copy = floor(low / length);
-    return GlintLobesSlot(min(u32(max((low - copy * length) / edge, 0.0)), count - 1u), copy);
-}
-
-fn glint_lobes_next_slot(slot: GlintLobesSlot, count: u32) -> GlintLobesSlot {
-    if slot.index + 1u >= count {
-        return GlintLobesSlot(0u, slot.copy + 1.0);
-    }
-    return GlintLobesSlot(slot.index + 1u, slot.copy);
-}
-
 // Density of those lobes of a cell that need the mass inside the disk: few, and it takes long. The loop over lobes ends where one
 // does.
 fn glint_lobes_cut_lobes(
@@ -132,20 +177,6 @@ fn glint_lobes_cell(
         sum.x += glint_lobes_cut_lobes(map, query, level, first, d);
     }
     return sum.xy;
-}
-
-// Range of x of an ellipse over a row of cells that begins at `start`; all of the level's for `whole`, x > y if there are none.
-fn glint_lobes_cells_span(
-    ellipse: GlintLobesEllipse,
-    size: vec2f,
-    start: f32,
-    edge: f32,
-    row: GlintLobesSlot,
-    all: vec2f,
-    whole: bool,
-) -> vec2f {
-    let under = glint_lobes_ellipse_span(ellipse, start, min(start + edge, (row.copy + 1.0) * size.y));
-    return select(under, vec2f(ellipse.mean.x - all.x, ellipse.mean.x + all.x), whole);
 }
 
 // Density and share of a stored level's cells under the footprint on the repeated map. `whole` sees each of the level's cells

@@ -8,6 +8,7 @@ pub(crate) mod check;
 
 use crate::container::{FourCc, KnownKind, Resource};
 use crate::vk_format;
+use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of an environment: [`EnvironmentParams`], bincode.
@@ -137,7 +138,41 @@ pub struct EnvironmentParams {
     pub measured: MeasuredError,
 }
 
+/// `GlintEnvironment` of the shaders: what they bind of the parameters.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct EnvironmentUniform {
+    /// Radiance (luminance) of each level, rising; zeros beyond them.
+    pub level: [f32; MAX_LEVELS],
+    /// 1 for each level that there is, else 0.
+    pub present: [f32; MAX_LEVELS],
+    /// Number of levels, 1 to [`MAX_LEVELS`].
+    pub levels: u32,
+    /// Number of mips.
+    pub mips: u32,
+    /// 1 where levels have colours of their own, else 0.
+    pub coloured: u32,
+    /// Stored radiance times this is radiance.
+    pub radiance_scale: f32,
+}
+
 impl EnvironmentParams {
+    /// What shaders bind of these parameters. Levels beyond [`MAX_LEVELS`] are left out.
+    pub fn uniform(&self) -> EnvironmentUniform {
+        let mut uniform = EnvironmentUniform {
+            levels: self.levels.len() as u32,
+            mips: self.mips(),
+            coloured: u32::from(self.coloured),
+            radiance_scale: self.radiance_scale as f32,
+            ..EnvironmentUniform::default()
+        };
+        for (k, level) in self.levels.iter().take(MAX_LEVELS).enumerate() {
+            uniform.level[k] = *level as f32;
+            uniform.present[k] = 1.0;
+        }
+        uniform
+    }
+
     /// Mips.
     pub fn mips(&self) -> u32 {
         self.roughness.len() as u32

@@ -1,12 +1,14 @@
 //! Checks the contents of lobe sections: what an evaluator relies on when it walks cells and decodes lobes.
 
-use crate::bytes::u16_at;
+use crate::bytes::u32_at;
+use crate::container::Resource;
 use crate::issue::{Issue, IssueCode};
 use crate::lobes::{
-    HalfLobe, LOBES, LobeLevel, LobeStorage, LobesParams, MAX_LAST_CELLS, MAX_LOBES_PER_CELL, MAX_SIGMA_RATIO,
-    MAX_TEXTURE_SIZE, NORMALS, NormalsStorage, PARAMS, PackedLobe,
+    HalfLobe, LOBES, LobeLevel, LobeStorage, LobesParams, LobesUniform, MAX_LAST_CELLS, MAX_LEVELS, MAX_LOBES_PER_CELL,
+    MAX_SIGMA_RATIO, MAX_TEXTURE_SIZE, NORMALS, NormalsStorage, PARAMS, PackedLobe, UNIFORM,
 };
 use crate::sections::{Loaded, Sections};
+use crate::synthesis::SynthesisUniform;
 use crate::wrap::Wrap;
 use half::f16;
 
@@ -18,11 +20,11 @@ pub(crate) fn check(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
     for section in sections.of_kind(PARAMS) {
         check_map(sections, section, issues);
     }
-    sections.report_orphans(&[LOBES, NORMALS], PARAMS, issues);
+    sections.report_orphans(&[UNIFORM, LOBES, NORMALS], PARAMS, issues);
 }
 
 fn check_map(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec<Issue>) {
-    let [lobes, normals] = [LOBES, NORMALS].map(|kind| sections.need(kind, section, issues));
+    let [uniform, lobes, normals] = [UNIFORM, LOBES, NORMALS].map(|kind| sections.need(kind, section, issues));
     let Some(params) = section.parameters::<LobesParams>(issues) else { return };
     if let Err(why) = check_parameters(&params) {
         issues.push(section.error(IssueCode::LobesParameters, why));
@@ -38,6 +40,9 @@ fn check_map(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec<Issu
             return;
         }
     };
+    if let Some(uniform) = uniform {
+        check_uniform(uniform, &params, issues);
+    }
     let Some(lobes) = lobes else { return };
     let Some(found) = lobes.buffer_count(params.storage.stride(), issues) else { return };
     if found != count {
@@ -76,6 +81,10 @@ fn check_parameters(params: &LobesParams) -> Result<(), String> {
             return Err(format!("expected normals between -1 and 1, found {low} and {extent} more"));
         }
     }
+    if !(params.rim_roughness >= 0.0 && params.rim_roughness <= 1.0) {
+        let found = params.rim_roughness;
+        return Err(format!("expected a roughness to leave out the rim at of 0 to 1, found {found}"));
+    }
     let step = params.step_texels;
     let in_steps = |side: u32| side.is_multiple_of(step.max(1));
     let whole_steps = params.wrap == Wrap::Clamp || (in_steps(params.width) && in_steps(params.height));
@@ -94,6 +103,9 @@ fn check_parameters(params: &LobesParams) -> Result<(), String> {
 
 /// Levels cover the map and follow each other; returns the number of lobes they have together.
 fn check_levels(params: &LobesParams) -> Result<u64, String> {
+    if params.levels.len() > MAX_LEVELS {
+        return Err(format!("expected at most {MAX_LEVELS} levels, found {}", params.levels.len()));
+    }
     let mut lobes = 0u64;
     let mut finer = None;
     for (i, level) in params.levels.iter().enumerate() {
@@ -144,6 +156,34 @@ fn check_level(level: &LobeLevel, grid: (u32, u32), first: u64, finer: Option<u3
         return Err(format!("expected a finite Jacobian that is not negative, found {}", level.jacobian_scale));
     }
     Ok(())
+}
+
+/// Largest difference of log₂ of a ratio from that of the parameters' numbers: they are rounded by whoever wrote them.
+const LOG_ROUNDING: f32 = 1e-5;
+
+/// Whether the uniform says what the parameters say; that of a map without a synthesis has zeros in its place. The synthesis'
+/// own check compares the part of one.
+fn check_uniform(section: Loaded<'_>, params: &LobesParams, issues: &mut Vec<Issue>) {
+    let code = IssueCode::LobesUniform;
+    if !section.expect(code, Resource::Buffer { stride: size_of::<LobesUniform>() as u32, count: 1 }, issues) {
+        return;
+    }
+    let found: LobesUniform = bytemuck::pod_read_unaligned(section.payload);
+    let synthesis = if params.step_texels == 0 { SynthesisUniform::default() } else { found.synthesis };
+    let mut expected = params.uniform(synthesis);
+    for (expected, found) in expected.levels.iter_mut().zip(&found.levels) {
+        let close = |a: f32, b: f32| if (a - b).abs() <= LOG_ROUNDING { b } else { a };
+        expected.position_log_ratio = close(expected.position_log_ratio, found.position_log_ratio);
+        expected.residual_log_ratio = close(expected.residual_log_ratio, found.residual_log_ratio);
+    }
+    let (found, expected) = (bytemuck::bytes_of(&found), bytemuck::bytes_of(&expected));
+    if let Some(word) =
+        found.chunks_exact(4).zip(expected.chunks_exact(4)).position(|(found, expected)| found != expected)
+    {
+        let [found, expected] = [found, expected].map(|bytes| u32_at(bytes, 4 * word));
+        let message = format!("byte {}: the parameters make it {expected:#010x}, found {found:#010x}", 4 * word);
+        issues.push(section.error(code, message));
+    }
 }
 
 /// Reports the first lobe that is wrong, and the first cell that has none.
@@ -200,21 +240,38 @@ fn half_fault(lobe: &HalfLobe) -> (bool, Option<&'static str>) {
 }
 
 fn check_normals(section: Loaded<'_>, params: &LobesParams, issues: &mut Vec<Issue>) {
-    let shape = params.normals_resource();
+    let shape = Resource::Buffer { stride: size_of::<[u32; 2]>() as u32, count: params.pair_count() };
     if !section.expect(IssueCode::LobesNormalsShape, shape, issues) {
         return;
     }
-    for (at, bytes) in section.payload.chunks_exact(params.normals.texel_bytes()).enumerate() {
-        let [x, y] = match params.normals {
-            NormalsStorage::Snorm16 => [0, 2].map(|k| f32::from(u16_at(bytes, k) as i16) / 32767.0),
-            NormalsStorage::Unorm8 => [0, 1].map(|k| f32::from(bytes[k]) / 255.0 * 2.0 - 1.0),
-        };
-        if x * x + y * y > LONGEST * LONGEST {
-            let (i, j) = (at % params.width as usize, at / params.width as usize);
-            let message =
-                format!("texel ({i}, {j}): expected a projected normal of length 1 at most, found ({x}, {y})");
-            issues.push(section.error(IssueCode::LobesNormal, message));
-            return;
-        }
+    let word = |at: u64, second: usize| u32_at(section.payload, 8 * at as usize + 4 * second);
+    let texels = u64::from(params.width) * u64::from(params.height);
+    let place = |at: u64| (at % u64::from(params.width), at / u64::from(params.width));
+    let normal = |word: u32| match params.normals {
+        NormalsStorage::Snorm16 => [word as i16, (word >> 16) as i16].map(|c| f32::from(c) / 32767.0),
+        NormalsStorage::Unorm8 => [word & 0xffff, word >> 16].map(|c| c as f32 / 255.0 * 2.0 - 1.0),
+    };
+    let long = (0..texels).find(|at| {
+        let [x, y] = normal(word(*at, 0));
+        x * x + y * y > LONGEST * LONGEST || (params.normals == NormalsStorage::Unorm8 && x.max(y) > 1.0)
+    });
+    if let Some(at) = long {
+        let ((i, j), [x, y]) = (place(at), normal(word(at, 0)));
+        let message = format!("texel ({i}, {j}): expected a projected normal of length 1 at most, found ({x}, {y})");
+        issues.push(section.error(IssueCode::LobesNormal, message));
+    }
+    let below = |at: u64| {
+        let (i, j) = place(at);
+        u64::from(params.row_below(j as u32)) * u64::from(params.width) + i
+    };
+    if let Some(at) = (0..texels).find(|at| word(*at, 1) != word(below(*at), 0)) {
+        let ((i, j), expected) = (place(at), word(below(at), 0));
+        let message = format!(
+            "texel ({i}, {j}): expected {expected:#010x} as the texel below it has, found {:#010x}",
+            word(at, 1)
+        );
+        issues.push(section.error(IssueCode::LobesNormalPair, message));
+    } else if (texels..params.pair_count()).any(|at| word(at, 0) != 0 || word(at, 1) != 0) {
+        issues.push(section.error(IssueCode::LobesNormalPair, "expected zeros after the last texel"));
     }
 }

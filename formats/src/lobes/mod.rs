@@ -1,4 +1,5 @@
-//! Typed sections of MIP-mapped position-normal lobes: parameters, lobes of every level, and the map's normals.
+//! Typed sections of MIP-mapped position-normal lobes: parameters, what shaders read of them, lobes of every level, and the
+//! map's normals.
 //!
 //! Method: Tan et al. 2022, section 5.1.2; what we store differs from the paper as `docs/methods/lobes.md` says. A lobe is a
 //! 4D Gaussian over position u (texels) and projected normal s. Its normal part leaves the intrinsic roughness σ_r out,
@@ -6,8 +7,9 @@
 
 pub(crate) mod check;
 
-use crate::container::{FourCc, KnownKind, Resource};
-use crate::vk_format;
+use crate::binding::{BUFFER_GRANULARITY, Binding};
+use crate::container::{FourCc, KnownKind};
+use crate::synthesis::{self, SynthesisUniform};
 use crate::wrap::Wrap;
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
@@ -17,21 +19,43 @@ pub const PARAMS: FourCc = FourCc(*b"LOPP");
 /// Lobes of all levels: buffer of [`PackedLobe`] (stride 16) or [`HalfLobe`] (stride 32), `lobes_per_cell` a cell, by
 /// level, then row of cells, then column. A lobe of weight 0 is none.
 pub const LOBES: FourCc = FourCc(*b"LOBE");
-/// The map's projected normals (n_x, n_y): texture of the format of [`NormalsStorage`], width × height texels.
+/// What shaders read of the parameters: buffer of one [`LobesUniform`] (stride 880).
+pub const UNIFORM: FourCc = FourCc(*b"LOUB");
+/// The map's projected normals (n_x, n_y): buffer of pairs of u32 (stride 8), one a texel, row by row. The first word is the
+/// texel's normal as [`NormalsStorage`] says, the second that of the texel below it as the map is wrapped. A pair of zeros
+/// follows where the number of texels is odd, so that the buffer is a multiple of 16 bytes.
 pub const NORMALS: FourCc = FourCc(*b"LONM");
+
+/// What a program of lobes, or of the surface synthesised from their map, binds: binding k is row k.
+///
+/// One uniform buffer serves lobes and synthesis. A scene's and a material's are before it, and Mesa 22.3's software adapter
+/// crashes on branches on the fourth of a program, which one of the synthesis alone would be.
+pub const BINDINGS: &[Binding] = &[
+    Binding::Uniform(UNIFORM),
+    Binding::Storage(LOBES),
+    Binding::Storage(NORMALS),
+    Binding::Storage(synthesis::OFFSETS),
+    Binding::Storage(synthesis::SEAMS),
+];
 
 /// The kinds of sections of this method.
 pub(crate) const KINDS: &[KnownKind] = &[
     KnownKind::first(PARAMS, "lobe parameters"),
+    KnownKind::first(UNIFORM, "lobe uniform"),
     KnownKind::first(LOBES, "lobes"),
     KnownKind::first(NORMALS, "lobe normals"),
 ];
 /// Largest width or height of a map.
 pub const MAX_TEXTURE_SIZE: u32 = 16_384;
+/// Most levels: cells of 4 texels doubled to the largest map, and the whole of a surface.
+pub const MAX_LEVELS: usize = 16;
 /// Most lobes a cell.
 pub const MAX_LOBES_PER_CELL: u32 = 256;
 /// Most columns and rows of cells of the last level, whose lobes together stand for the whole.
 pub const MAX_LAST_CELLS: u32 = 4;
+/// Share of a map beyond the rim of the disk of normals that may be left out of a picture: less than a step of 8 bits on the map's
+/// average, more where its few steep normals are. See [`LobesParams::rim_roughness`].
+pub const BEYOND_RIM: f32 = 1e-4;
 /// Stored correlations are at most this, so that every covariance is positive definite.
 pub const MAX_CORRELATION: f32 = 0.998;
 /// Standard deviations are stored by their logarithm over this ratio of largest to smallest, at most.
@@ -56,31 +80,13 @@ impl LobeStorage {
     }
 }
 
-/// How the map's normals are stored.
+/// How a normal is stored in a word of [`NORMALS`], x in the lower half.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NormalsStorage {
-    /// R16G16_SNORM, 4 bytes a texel.
+    /// Two i16: n = c / 32767.
     Snorm16,
-    /// R8G8_UNORM, 2 bytes a texel: n = 2 c − 1.
+    /// Two u16 of 0 to 255: n = 2 c / 255 − 1.
     Unorm8,
-}
-
-impl NormalsStorage {
-    /// VkFormat of the texture.
-    pub fn vk_format(self) -> u32 {
-        match self {
-            NormalsStorage::Snorm16 => vk_format::R16G16_SNORM,
-            NormalsStorage::Unorm8 => vk_format::R8G8_UNORM,
-        }
-    }
-
-    /// Bytes of a texel.
-    pub fn texel_bytes(self) -> usize {
-        match self {
-            NormalsStorage::Snorm16 => 4,
-            NormalsStorage::Unorm8 => 2,
-        }
-    }
 }
 
 /// How the map is filtered between texel centres.
@@ -166,8 +172,11 @@ pub struct LobesParams {
     pub normal_low: [f32; 2],
     /// Range of projected normals of lobes.
     pub normal_extent: [f32; 2],
-    /// Levels, cells of doubling edge; the last has at most [`MAX_LAST_CELLS`] columns and rows.
+    /// Up to [`MAX_LEVELS`] levels, cells of doubling edge; the last has at most [`MAX_LAST_CELLS`] columns and rows.
     pub levels: Vec<LobeLevel>,
+    /// Intrinsic roughness up to which renderers may leave out what Gaussians have beyond the rim of the disk of normals: at most
+    /// [`BEYOND_RIM`] of the map. 0 where the map's steep normals never allow it.
+    pub rim_roughness: f32,
     /// Roughness that the error was measured at: the intrinsic one, or larger where normals range too far to resolve it.
     pub measured_roughness: f32,
     /// Error as the bake measured it, a row a footprint size.
@@ -175,16 +184,65 @@ pub struct LobesParams {
 }
 
 impl LobesParams {
-    /// What [`NORMALS`] is.
-    pub fn normals_resource(&self) -> Resource {
-        Resource::Texture {
-            vk_format: self.normals.vk_format(),
+    /// Pairs in [`NORMALS`].
+    pub fn pair_count(&self) -> u64 {
+        let texels = u64::from(self.width) * u64::from(self.height);
+        texels.next_multiple_of((BUFFER_GRANULARITY / size_of::<[u32; 2]>()) as u64)
+    }
+
+    /// Row of texels whose normals are the second words of row `row`: the next one, and after the last the first of a repeated
+    /// map or the last of a clamped one.
+    pub fn row_below(&self, row: u32) -> u32 {
+        match self.wrap {
+            _ if row + 1 < self.height => row + 1,
+            Wrap::Repeat => 0,
+            Wrap::Clamp => row,
+        }
+    }
+
+    /// What a stored position of 1 is, in texels from the cell's corner: the cell's edge, cut to the map.
+    pub fn extent(&self, level: &LobeLevel) -> [f32; 2] {
+        [self.width, self.height].map(|side| level.cell_texels.min(side) as f32)
+    }
+
+    /// What [`UNIFORM`] holds of a level.
+    pub fn level_uniform(&self, level: &LobeLevel) -> LevelUniform {
+        let log_ratio = |[low, high]: [f32; 2]| libm::log2f(high / low);
+        LevelUniform {
+            cell_texels: level.cell_texels,
+            cells_x: level.cells_x,
+            cells_y: level.cells_y,
+            first_lobe: level.first_lobe,
+            weight_scale: level.weight_scale,
+            jacobian_scale: level.jacobian_scale,
+            position_sigma: level.position_sigma[0],
+            position_log_ratio: log_ratio(level.position_sigma),
+            residual_sigma: level.residual_sigma[0],
+            residual_log_ratio: log_ratio(level.residual_sigma),
+            extent: self.extent(level),
+        }
+    }
+
+    /// What [`UNIFORM`] holds of these parameters, of which the first [`MAX_LEVELS`] levels, and of the synthesis that the map
+    /// is the sample of; zeros if there is none.
+    pub fn uniform(&self, synthesis: SynthesisUniform) -> LobesUniform {
+        let mut levels = [LevelUniform::default(); MAX_LEVELS];
+        for (slot, level) in levels.iter_mut().zip(&self.levels) {
+            *slot = self.level_uniform(level);
+        }
+        let map = MapUniform {
             width: self.width,
             height: self.height,
-            layers: 1,
-            faces: 1,
-            mips: 1,
-        }
+            wrap: u32::from(self.wrap == Wrap::Clamp),
+            nearest: u32::from(self.filter == Filter::Nearest),
+            normals: u32::from(self.normals == NormalsStorage::Unorm8),
+            lobes_per_cell: self.lobes_per_cell,
+            step_texels: self.step_texels,
+            levels: self.levels.len() as u32,
+            normal_low: self.normal_low,
+            normal_extent: self.normal_extent,
+        };
+        LobesUniform { map, synthesis, levels }
     }
 
     /// Texels from one cell of `cell_texels` to the next.
@@ -248,4 +306,70 @@ pub struct HalfLobe {
     pub weight: u16,
     /// Zero.
     pub reserved: u16,
+}
+
+/// What [`UNIFORM`] holds of the map: `GlintLobesMap` of the shaders.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct MapUniform {
+    /// Width of the map in texels.
+    pub width: u32,
+    /// Height of the map in texels.
+    pub height: u32,
+    /// What filtering sees beyond the map's edge: 0 the other side, 1 the edge.
+    pub wrap: u32,
+    /// 1: the nearest texel's normal; 0: bilinear.
+    pub nearest: u32,
+    /// How [`NORMALS`] are stored: 0 [`NormalsStorage::Snorm16`], 1 [`NormalsStorage::Unorm8`].
+    pub normals: u32,
+    /// Lobes a cell.
+    pub lobes_per_cell: u32,
+    /// [`LobesParams::step_texels`].
+    pub step_texels: u32,
+    /// Number of levels.
+    pub levels: u32,
+    /// Smallest projected normal of a lobe.
+    pub normal_low: [f32; 2],
+    /// Range of projected normals of lobes.
+    pub normal_extent: [f32; 2],
+}
+
+/// What [`UNIFORM`] holds of a level: `GlintLobesLevel` of the shaders.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct LevelUniform {
+    /// Edge of a cell in texels.
+    pub cell_texels: u32,
+    /// Columns of cells.
+    pub cells_x: u32,
+    /// Rows of cells.
+    pub cells_y: u32,
+    /// Index of the level's first lobe.
+    pub first_lobe: u32,
+    /// Weight, in texels, that a stored 1.0 stands for.
+    pub weight_scale: f32,
+    /// |∂s/∂u| per texel that a stored 1.0 stands for.
+    pub jacobian_scale: f32,
+    /// Smallest standard deviation of positions, in texels.
+    pub position_sigma: f32,
+    /// log₂ of the largest over the smallest standard deviation of positions.
+    pub position_log_ratio: f32,
+    /// Smallest standard deviation of the normals' residual.
+    pub residual_sigma: f32,
+    /// log₂ of the largest over the smallest standard deviation of the normals' residual.
+    pub residual_log_ratio: f32,
+    /// What a stored position of 1 is, in texels from the cell's corner.
+    pub extent: [f32; 2],
+}
+
+/// What [`UNIFORM`] holds: `GlintLobesUniform` of the shaders.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct LobesUniform {
+    /// The map.
+    pub map: MapUniform,
+    /// The synthesis of the surface that the map is the sample of; zeros if there is none.
+    pub synthesis: SynthesisUniform,
+    /// The levels, the finest first; zeros after the last.
+    pub levels: [LevelUniform; MAX_LEVELS],
 }

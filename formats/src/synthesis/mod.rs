@@ -8,15 +8,18 @@ pub(crate) mod check;
 
 use crate::container::{FourCc, KnownKind};
 use crate::wrap::Wrap;
+use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of a synthesis: [`SynthesisParams`], bincode.
 pub const PARAMS: FourCc = FourCc(*b"SYPP");
-/// Patch offsets: buffer of two u16 (x, y), stride 4: the sample texel at a patch's texel (0, 0).
+/// Patch offsets: buffer of two u16 (x, y), stride 4: the sample texel at a patch's texel (0, 0). Zeros follow to a multiple of 16
+/// bytes, so that every host binds the buffer whole: see [`SynthesisParams::stored_offsets`].
 ///
 /// [`Layout::Patches`]: row by row. [`Layout::CornerTiles`]: first one a corner colour, then one a tile and variant.
 pub const OFFSETS: FourCc = FourCc(*b"SYPO");
-/// Seam paths: buffer of u32, stride 4, see [`SynthesisParams::seam_words`] and [`PathShape`].
+/// Seam paths: buffer of u32, stride 4, see [`SynthesisParams::seam_words`] and [`PathShape`]. Zeros follow to a multiple of 16 bytes,
+/// 16 bytes at least: see [`SynthesisParams::stored_seam_words`].
 pub const SEAMS: FourCc = FourCc(*b"SYSE");
 
 /// The kinds of sections of this method.
@@ -34,6 +37,8 @@ pub const PATCH_RANGE: (u32, u32) = (4, 1024);
 pub const MAX_OVERLAP: u32 = 64;
 /// Most patches of a surface.
 pub const MAX_PATCHES: u64 = 1 << 20;
+/// Most bytes of seam paths: what a storage buffer may hold on every GPU.
+pub const MAX_SEAM_BYTES: u64 = 128 << 20;
 /// Most corner colours.
 pub const MAX_COLOURS: u32 = 4;
 /// Most variants of a tile.
@@ -104,6 +109,51 @@ pub struct SynthesisParams {
     pub measured: MeasuredError,
 }
 
+/// [`SynthesisUniform::arrangement`] of [`Layout::Patches`].
+pub const PATCHES: u32 = 0;
+/// [`SynthesisUniform::arrangement`] of [`Layout::CornerTiles`].
+pub const CORNER_TILES: u32 = 1;
+
+/// What the section [`crate::lobes::UNIFORM`] of the same name holds of a synthesis, `GlintSynthesis` of the shaders: all that a
+/// look-up needs to know besides offsets and seams. 64 bytes.
+/// Fields that the arrangement has no use for are 0.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct SynthesisUniform {
+    /// Width of the sample in texels.
+    pub sample_width: u32,
+    /// Height of the sample in texels.
+    pub sample_height: u32,
+    /// 0: patches may cross the sample's edge; 1: they may not.
+    pub wrap: u32,
+    /// Edge of a patch (or tile) in texels.
+    pub patch_texels: u32,
+    /// Texels over which patches overlap.
+    pub overlap: u32,
+    /// [`PATCHES`] or [`CORNER_TILES`].
+    pub arrangement: u32,
+    /// Columns of patches after which the surface repeats, of a grid of patches.
+    pub columns: u32,
+    /// Rows of patches after which the surface repeats, of a grid of patches.
+    pub rows: u32,
+    /// Number of corner colours, of corner tiles.
+    pub colours: u32,
+    /// Tiles for the same four colours, of corner tiles.
+    pub variants: u32,
+    /// Texels between the edge of a tile and its middle patch, of corner tiles.
+    pub margin: u32,
+    /// Seed of the hash, of corner tiles.
+    pub hash_seed: u32,
+    /// Bits of a path's entry, 0 where there is no choice: [`PathShape::bits`].
+    pub path_bits: u32,
+    /// Entries in a word of a path, 0 where there is no choice: [`PathShape::per_word`].
+    pub path_per_word: u32,
+    /// Words of a path of a patch of the grid, or around the middle patch of a tile.
+    pub path_words: u32,
+    /// Words of a path between two corner colours, of corner tiles.
+    pub colour_path_words: u32,
+}
+
 /// How a seam path is packed: `per_word` entries of `bits` bits in a u32, the first in the lowest bits.
 ///
 /// An entry is the number of overlap texels of its row (or column) that the older patch keeps, 0 to overlap − 1.
@@ -130,6 +180,40 @@ impl PathShape {
 }
 
 impl SynthesisParams {
+    /// What shaders read of these parameters.
+    pub fn uniform(&self) -> SynthesisUniform {
+        let shape = self.patch_path();
+        let uniform = SynthesisUniform {
+            sample_width: self.sample_width,
+            sample_height: self.sample_height,
+            wrap: match self.wrap {
+                Wrap::Repeat => 0,
+                Wrap::Clamp => 1,
+            },
+            patch_texels: self.patch,
+            overlap: self.overlap,
+            path_bits: shape.bits,
+            path_per_word: shape.per_word,
+            path_words: shape.words,
+            ..SynthesisUniform::default()
+        };
+        match self.layout {
+            Layout::Patches { columns, rows, .. } => {
+                SynthesisUniform { arrangement: PATCHES, columns, rows, ..uniform }
+            }
+            Layout::CornerTiles { colours, variants, margin, hash_seed } => SynthesisUniform {
+                arrangement: CORNER_TILES,
+                colours,
+                variants,
+                margin,
+                hash_seed,
+                path_words: self.middle_path(margin).words,
+                colour_path_words: self.colour_path(margin).words,
+                ..uniform
+            },
+        }
+    }
+
     /// Paths of a patch of the grid: left, then upper.
     pub fn patch_path(&self) -> PathShape {
         PathShape::new(self.patch + self.overlap, self.overlap)
@@ -145,7 +229,7 @@ impl SynthesisParams {
         PathShape::new(self.patch - 2 * margin, self.overlap)
     }
 
-    /// Records of [`OFFSETS`].
+    /// Patches, each with an offset.
     pub fn offset_count(&self) -> u64 {
         match self.layout {
             Layout::Patches { columns, rows, .. } => u64::from(columns) * u64::from(rows),
@@ -155,7 +239,17 @@ impl SynthesisParams {
         }
     }
 
-    /// Records of [`SEAMS`]. [`Layout::Patches`]: two paths a patch. [`Layout::CornerTiles`]: for each pair (a, b) of
+    /// Records of [`OFFSETS`] as they are stored: with zeros to a multiple of 16 bytes.
+    pub fn stored_offsets(&self) -> u64 {
+        self.offset_count().next_multiple_of(4)
+    }
+
+    /// Records of [`SEAMS`] as they are stored: with zeros to a multiple of 16 bytes, and 16 bytes at least.
+    pub fn stored_seam_words(&self) -> u64 {
+        self.seam_words().max(1).next_multiple_of(4)
+    }
+
+    /// Words of seam paths. [`Layout::Patches`]: two paths a patch. [`Layout::CornerTiles`]: for each pair (a, b) of
     /// colours, at a · C + b, the path where b lies right of a and the one where b lies below a; then four paths a tile
     /// and variant.
     pub fn seam_words(&self) -> u64 {

@@ -1,8 +1,9 @@
 //! Sections of lobes.
 
+use glint_formats::Section;
 use glint_formats::Wrap;
 use glint_formats::lobes::{self, HalfLobe, LobeLevel, LobeStorage, LobesParams, NormalsStorage, PackedLobe};
-use glint_formats::{Resource, Section, vk_format};
+use glint_formats::synthesis::SynthesisUniform;
 
 /// A map of 5 × 3 texels: two cells of 4 texels, one of 8, two lobes each.
 pub fn lobes_params(storage: LobeStorage) -> LobesParams {
@@ -31,6 +32,7 @@ pub fn lobes_params(storage: LobeStorage) -> LobesParams {
         normal_low: [-0.5, -0.25],
         normal_extent: [0.75, 0.5],
         levels: vec![level, LobeLevel { cell_texels: 8, cells_x: 1, first_lobe: 4, ..level }],
+        rim_roughness: 0.1,
         measured_roughness: 0.02,
         measured: vec![lobes::FootprintError { sigma_texels: 2.0, mean: 0.01, worst: 0.02 }],
     }
@@ -64,24 +66,30 @@ pub fn half_lobes() -> Vec<HalfLobe> {
     [lobe, HalfLobe::default()].repeat(3)
 }
 
-/// The three sections of a map's lobes.
-pub fn lobes_sections(params: &LobesParams, packed: &[PackedLobe], half: &[HalfLobe], normals: &[u8]) -> Vec<Section> {
-    let texture =
-        Resource::Texture { vk_format: vk_format::R8G8_UNORM, width: 5, height: 3, layers: 1, faces: 1, mips: 1 };
+/// The four sections of a map's lobes.
+pub fn lobes_sections(
+    params: &LobesParams,
+    packed: &[PackedLobe],
+    half: &[HalfLobe],
+    normals: &[[u32; 2]],
+) -> Vec<Section> {
     let records = match params.storage {
         LobeStorage::Packed => Section::buffer(lobes::LOBES, "hide", packed),
         LobeStorage::Half => Section::buffer(lobes::LOBES, "hide", half),
     };
     vec![
         Section::parameters(lobes::PARAMS, "hide", params),
+        Section::buffer(lobes::UNIFORM, "hide", &[params.uniform(SynthesisUniform::default())]),
         records,
-        Section::texture(lobes::NORMALS, "hide", texture, normals.to_vec()),
+        Section::buffer(lobes::NORMALS, "hide", normals),
     ]
 }
 
-/// Normals of [`lobes_params`].
-pub fn lobes_normals() -> Vec<u8> {
-    vec![128; 5 * 3 * 2]
+/// Normals of [`lobes_params`], each with the one below it; the number of texels is odd.
+pub fn lobes_normals() -> Vec<[u32; 2]> {
+    let mut pairs = vec![[0x0080_0080; 2]; 5 * 3];
+    pairs.push([0; 2]);
+    pairs
 }
 
 pub fn good_lobes() -> Vec<Section> {

@@ -1,10 +1,10 @@
 //! Sections of lobes and the surface they lie on.
 
 use super::*;
+use glint_formats::Section;
 use glint_formats::Wrap;
 use glint_formats::lobes::{self, LobeStorage, LobesParams};
 use glint_formats::synthesis::SynthesisParams;
-use glint_formats::{Resource, Section, vk_format};
 
 /// Lobes of the sample of a surface: 2 × 2 cells of 4 texels and the whole, a lobe each.
 pub fn surface_lobes_params() -> LobesParams {
@@ -25,17 +25,15 @@ pub fn surface_synthesis_params() -> SynthesisParams {
     SynthesisParams { sample_height: 8, alignment: 4, ..synthesis_params() }
 }
 
-/// The six sections of a surface.
+/// The seven sections of a surface.
 pub fn surface_sections(lobes: &LobesParams, synthesis: &SynthesisParams) -> Vec<Section> {
-    let format = vk_format::R8G8_UNORM;
-    let texture =
-        Resource::Texture { vk_format: format, width: lobes.width, height: lobes.height, layers: 1, faces: 1, mips: 1 };
-    let normals = vec![128; (lobes.width * lobes.height * 2) as usize];
+    let normals = vec![[0x0080_0080u32; 2]; (lobes.width * lobes.height).next_multiple_of(2) as usize];
     let mut sections = vec![
         Section::parameters(lobes::PARAMS, "gold", lobes),
+        Section::buffer(lobes::UNIFORM, "gold", &[lobes.uniform(synthesis.uniform())]),
         Section::buffer(lobes::LOBES, "gold", &[packed_lobes()[0]; 5]),
-        Section::texture(lobes::NORMALS, "gold", texture, normals),
+        Section::buffer(lobes::NORMALS, "gold", &normals),
     ];
-    sections.extend(synthesis_sections(synthesis, &[[4, 4]; 2], &synthesis_seams()));
+    sections.extend(synthesis_sections(synthesis, &[[4, 4], [4, 4], [0; 2], [0; 2]], &synthesis_seams()));
     sections
 }

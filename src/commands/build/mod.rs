@@ -7,7 +7,7 @@ use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::project::freshness::Freshness;
 use crate::project::settled::{self, Fit};
-use crate::project::{Project, Target};
+use crate::project::{self, Project, Target};
 use clap::builder::RangedU64ValueParser;
 use glint_formats::container::{TEMPORARY_PREFIX, TEMPORARY_SUFFIX};
 use rayon::prelude::*;
@@ -34,6 +34,8 @@ pub struct Args {
     #[arg(long, value_name = "NAME")]
     pub only: Vec<String>,
     /// Do nothing; end with code 7 when a pack is not up to date
+    ///
+    /// What is not up to date is said, and why.
     #[arg(long, conflicts_with_all = ["dry_run", "depfile"])]
     pub check: bool,
     /// Threads to use [default: one a core]
@@ -41,6 +43,8 @@ pub struct Args {
     #[arg(help_heading = "Run")]
     pub threads: Option<u32>,
     /// Packs to work on at a time; memory grows with it [default: as many as threads, at most 4]
+    ///
+    /// Memory does not grow with the number of packs.
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
     #[arg(help_heading = "Run")]
     pub in_flight: Option<usize>,
@@ -57,7 +61,7 @@ const MOST_IN_FLIGHT: usize = 4;
 
 /// Runs the subcommand.
 pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
-    let mut project = Project::load(&args.project)?;
+    let mut project = project::load(&args.project)?;
     if let Some(threads) = args.threads {
         // Bakes run on the pool of the whole process, so that all packs share its threads.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build_global();

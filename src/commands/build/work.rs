@@ -1,6 +1,7 @@
 //! Bakes what is stale, a few packs at a time. Each pack's bake is parallel in itself, on the threads that all share.
 
 use crate::cli::Terminal;
+use crate::commands::bake;
 use crate::exit::Failure;
 use crate::progress;
 use crate::project::freshness::Freshness;
@@ -89,7 +90,7 @@ fn one(project: &Project, target: &Target, state: &Result<Freshness, Failure>, t
 /// Whether the pack has other bytes than before, and how many.
 fn baked(project: &Project, target: &Target, state: &Freshness, part: Terminal) -> Result<(bool, u64), Failure> {
     let before = Stat::of(&target.pack).ok();
-    target.bake.clone().run(part)?;
+    bake::run(target.bake.as_ref(), part)?;
     let unreadable = |path: &Path| {
         let path = path.to_owned();
         move |e: std::io::Error| Failure::io(&path, "cannot be read", &e)

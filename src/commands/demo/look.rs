@@ -3,9 +3,10 @@
 use crate::canvas::Canvas;
 use crate::exit::{Exit, Failure};
 use crate::info::Report;
+use crate::methods::ndf_maps::info::LayersInfo;
 use crate::preview::{Camera, Layer, Object, Scene, Shape, Surface, render};
 use glam::Vec3;
-use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::sections;
 use std::path::Path;
 
@@ -26,7 +27,7 @@ impl Look {
     pub fn new(report: &Report) -> Result<Look, Failure> {
         let missing = || Failure::new(Exit::Unexpected, format!("{}: lacks what was baked", report.file));
         let pack = report.pack().ok_or_else(missing)?;
-        let layers = report.layers.first().ok_or_else(missing)?;
+        let layers = LayersInfo::all_of(pack).into_iter().next().ok_or_else(missing)?.0;
         let load = |name: &str| sections::from_pack(pack, name).map_err(|e| Failure::bake(Path::new(&report.file), &e));
         Ok(Look {
             paint: load(&layers.base)?,

@@ -11,9 +11,7 @@ use crate::output;
 use crate::pack;
 use crate::progress::Stages;
 use crate::quantities::kib;
-use glint_bake_core::ndf_maps::bake::NdfMapsOptions;
-use glint_bake_core::ndf_maps::placement::{PlacementOptions, StochasticOptions};
-use glint_bake_core::ndf_maps::transform::TransformRanges;
+use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, StochasticOptions, TransformRanges};
 use glint_bake_core::normal_map::{GreenAxis, NormalMap, NormalOptions, RawNormals};
 use glint_formats::Wrap;
 use glint_formats::ndf_maps::LayeredMaterial;
@@ -80,8 +78,10 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         output::write(&pack_path, &bake(terminal)?)?;
         let baked = start.elapsed();
         let report = read_back(&pack_path)?;
-        for material in &report.materials {
-            terminal.say(&format!("{:<6} {}", format!("{}:", material.name), material.accuracy_line()));
+        for item in report.contents.items() {
+            if let Some(line) = item.accuracy_line() {
+                terminal.say(&format!("{:<6} {line}", format!("{}:", item.name())));
+            }
         }
         let file = pack_path.display();
         terminal.say(&format!(

@@ -1,17 +1,17 @@
 //! `glint-bake export`: what a pack holds as files that engines and other programs load, and a JSON beside them.
 
 mod exr;
+mod format;
 mod sidecar;
 
 use crate::cli::{Terminal, values};
 use crate::exit::{Exit, Failure};
 use crate::info::Report;
 use crate::output;
-use clap::ValueEnum;
+use format::Target;
 use glint_formats::export::{Texture, dds, ktx2};
 use glint_formats::provenance::{InputDigest, PROVENANCE};
-use glint_formats::{Limits, Pack, Resource, SectionEntry, WriteOutcome, kinds, vk_format};
-use serde::Serialize;
+use glint_formats::{Limits, Pack, SectionEntry, WriteOutcome, kinds, vk_format};
 use sidecar::{FileInfo, Sidecar};
 use std::collections::HashSet;
 use std::path::PathBuf;
@@ -39,6 +39,8 @@ pub struct Args {
     #[arg(long, value_name = "FORMAT")]
     pub to: Target,
     /// Only sections of this kind, as in ENRA; may be given more than once
+    ///
+    /// Parameters are in the JSON all the same.
     #[arg(long, value_name = "KIND")]
     pub section: Vec<String>,
     /// Only sections of this name; may be given more than once
@@ -50,42 +52,6 @@ pub struct Args {
     /// Check everything, say what would be done, write nothing
     #[arg(short = 'n', long)]
     pub dry_run: bool,
-}
-
-/// What textures are written as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Target {
-    /// Khronos Texture 2.0
-    Ktx2,
-    /// DirectDraw Surface with the DX10 header
-    Dds,
-    /// OpenEXR, one part an image
-    Exr,
-    /// The bytes of the pack
-    Raw,
-}
-
-impl Target {
-    fn extension(self) -> &'static str {
-        match self {
-            Target::Ktx2 => "ktx2",
-            Target::Dds => "dds",
-            Target::Exr => "exr",
-            Target::Raw => "bin",
-        }
-    }
-
-    /// What a section becomes, and why when that is not what was asked for.
-    fn for_section(self, entry: &SectionEntry) -> (Target, Option<&'static str>) {
-        let raw = |why| (Target::Raw, (self != Target::Raw).then_some(why));
-        match entry.resource {
-            Resource::Texture { .. } if self != Target::Raw && Texture::of(&entry.resource).is_some() => (self, None),
-            Resource::Texture { .. } => raw("a texture of a format this version has no name for; its bytes"),
-            Resource::Buffer { .. } => raw("a buffer, which no texture file holds; its bytes"),
-            Resource::Parameters => raw("parameters of a kind this version does not know; their bytes"),
-        }
-    }
 }
 
 /// A file that is to be written.

@@ -1,6 +1,6 @@
 //! The JSON beside exported files: what each file is, the parameters that a renderer needs, where the pack comes from.
 
-use super::Target;
+use super::format::Target;
 use crate::info::ParametersInfo;
 use glint_formats::provenance::{InputDigest, Provenance};
 use glint_formats::{FourCc, Resource};

@@ -1,6 +1,7 @@
 //! Fields of parameters and provenance that differ, by their names.
 
-use crate::info::Report;
+use crate::info::parameters::ParametersInfo;
+use crate::info::report::Report;
 use glint_formats::FourCc;
 use glint_formats::provenance::{PROVENANCE, Provenance};
 use serde::Serialize;
@@ -31,7 +32,7 @@ pub fn compare(a: &Report, b: &Report) -> Vec<FieldChange> {
         }
     }
     for of_a in &a.parameters {
-        let same = |of: &&crate::info::ParametersInfo| of.kind == of_a.kind && of.name == of_a.name;
+        let same = |of: &&ParametersInfo| of.kind == of_a.kind && of.name == of_a.name;
         if let Some(of_b) = b.parameters.iter().find(same) {
             walk(of_a.kind, &of_a.name, "", &tree(&of_a.value), &tree(&of_b.value), &mut changes);
         }

@@ -7,7 +7,7 @@ mod text;
 pub use fields::FieldChange;
 pub use payloads::{RecordDifference, TexelDifference};
 
-use super::Report;
+use super::report::Report;
 use crate::exit::{Exit, Failure};
 use glint_formats::{Codec, FourCc, Issue, Pack, Resource, SectionEntry};
 use serde::Serialize;

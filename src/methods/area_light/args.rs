@@ -1,7 +1,8 @@
 //! Flags of `glint-bake area-light`.
 
-use crate::cli::RunFlags;
 use crate::cli::normal_maps::{InputFlags, check_name, unique_name};
+use crate::cli::{OptionList, RunFlags};
+use crate::delivery::Delivery;
 use crate::exit::Failure;
 use clap::ValueEnum;
 use glint_bake_core::area_light::AreaLightOptions;
@@ -41,6 +42,8 @@ pub struct Args {
     #[arg(long, value_name = "FORMAT", default_value = "f16", help_heading = "Bake")]
     pub format: Format,
     /// Leave out so many of the finest mips, 0 to 14, for maps that are never seen closer
+    ///
+    /// The pack is then of a map smaller by 2^N.
     #[arg(long, value_name = "N", default_value = "0", value_parser = clap::value_parser!(u32).range(0..=14))]
     #[arg(help_heading = "Bake")]
     pub skip_mips: u32,
@@ -79,9 +82,31 @@ impl Args {
         }
     }
 
+    /// Name of the material.
+    ///
+    /// # Errors
+    /// Usage, when it cannot be one.
     pub fn name(&self) -> Result<String, Failure> {
         let Some(name) = &self.name else { return Ok(unique_name(&self.map, &[])) };
         check_name(name)?;
         Ok(name.clone())
+    }
+
+    /// Where the pack goes.
+    pub fn delivery(&self) -> Delivery<'_> {
+        Delivery { output: &self.output, inputs: std::slice::from_ref(&self.map), run: &self.run }
+    }
+
+    /// Options for provenance. Flags that do not change the pack's bytes are left out.
+    pub fn option_list(&self) -> OptionList {
+        let mut options = OptionList::default();
+        options.push("base-roughness", self.base_roughness);
+        options.push("anisotropic", self.anisotropic);
+        options.push_choice("format", &self.format);
+        if self.skip_mips > 0 {
+            options.push("skip-mips", self.skip_mips);
+        }
+        options.extend(self.input.option_list());
+        options
     }
 }

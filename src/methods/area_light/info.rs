@@ -1,9 +1,11 @@
 //! One area-light material, as numbers.
 
+use crate::methods::contents::Item;
 use crate::quantities::kib;
 use glam::Vec2;
+use glint_bake_core::area_light::baked::Maps;
+use glint_bake_core::area_light::eval::fetch;
 use glint_bake_core::area_light::sections;
-use glint_bake_core::area_light::{baked::Maps, eval::fetch};
 use glint_formats::Pack;
 use glint_formats::Wrap;
 use glint_formats::area_light::{MeasuredError, NormalStorage};
@@ -92,7 +94,7 @@ impl AreaLightInfo {
     }
 
     /// Size and error on one line.
-    pub fn accuracy_line(&self) -> String {
+    fn size_and_error(&self) -> String {
         let MeasuredError { normal_angle, roughness, table_mean } = self.measured;
         format!(
             "{} × {} texels, {} mips, {} and tables {}, normals within {normal_angle:.1e} rad, roughness within \
@@ -105,9 +107,18 @@ impl AreaLightInfo {
             100.0 * table_mean
         )
     }
+}
 
-    /// The part of the text report that is about this material.
-    pub fn to_text(&self) -> String {
+impl Item for AreaLightInfo {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn accuracy_line(&self) -> Option<String> {
+        Some(self.size_and_error())
+    }
+
+    fn to_text(&self) -> String {
         let mut out = String::new();
         let kind = if self.anisotropic { "anisotropic" } else { "isotropic" };
         // Writing to a string cannot fail.

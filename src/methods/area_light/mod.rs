@@ -1,9 +1,79 @@
-//! Maps for rectangle lights: `glint-bake area-light`.
+//! Maps of mean normals and roughness for rectangle lights.
 
-pub mod args;
-pub mod bake;
-pub mod info;
-pub mod plan;
-pub mod plot;
+mod args;
+mod bake;
+mod info;
+mod plan;
+mod plot;
 
-pub use args::Args;
+use super::bake::{Bake, Candidates, FinishedPack};
+use super::contents::{Field, ParameterKind};
+use super::method::{Method, command, parse};
+use super::planning::{Planning, Request};
+use super::plots::WritePlot;
+use crate::cli::Terminal;
+use crate::delivery::Delivery;
+use crate::exit::Failure;
+use crate::scene::SubjectKind;
+use args::Args;
+use clap::{ArgMatches, Command};
+use glint_formats::Pack;
+use glint_formats::area_light::{AreaLightParams, PARAMS};
+use std::sync::Arc;
+
+/// The method.
+pub struct AreaLight;
+
+impl Method for AreaLight {
+    fn name(&self) -> &'static str {
+        "area-light"
+    }
+
+    fn command(&self) -> Command {
+        command::<Args>(self)
+    }
+
+    fn parse(&self, matches: &ArgMatches) -> Result<Arc<dyn Bake>, clap::Error> {
+        parse::<Args>(matches)
+    }
+
+    fn parameters(&self) -> &'static [ParameterKind] {
+        const { &[ParameterKind::of::<AreaLightParams>(PARAMS)] }
+    }
+
+    fn describe(&self, pack: Option<&Pack>) -> Vec<Field> {
+        vec![Field::new("area_lights", pack, info::AreaLightInfo::all_of)]
+    }
+
+    fn plot(&self, pack: &Pack, write: &mut WritePlot<'_>) -> Result<(), Failure> {
+        plot::write_all(pack, write)
+    }
+
+    fn planning(&self) -> Option<Planning> {
+        Some(Planning {
+            subject: SubjectKind::Surface,
+            product: "area-light maps",
+            light: "rectangle light",
+            is_lit: |lights| lights.rectangle,
+            measure: "RMSE of highlights",
+        })
+    }
+}
+
+impl Bake for Args {
+    fn delivery(&self) -> Delivery<'_> {
+        Args::delivery(self)
+    }
+
+    fn bake(&self, terminal: Terminal) -> Result<Option<FinishedPack>, Failure> {
+        bake::bake(self, terminal)
+    }
+
+    fn candidates(&self, request: &Request<'_>) -> Result<Candidates, Failure> {
+        plan::candidates(self, request)
+    }
+
+    fn measure(&self, pack: &Pack, request: &Request<'_>) -> Result<f64, Failure> {
+        plan::measure(self, pack, request)
+    }
+}

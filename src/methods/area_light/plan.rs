@@ -1,19 +1,25 @@
 //! Drafts of maps for rectangle lights: which mips the scene's footprints read, and bytes against the error of highlights.
 
-use crate::exit::{Exit, Failure};
-use crate::methods::Draft;
-use crate::plan::{Drafts, Found, Point, options, sizes};
-use crate::project::scene::{Scene, View};
+use super::args::{Args, Format};
+use super::bake::draft;
+use crate::cli::values::name_of;
+use crate::exit::Failure;
+use crate::methods::bake::Candidates;
+use crate::methods::planning::{Request, sizes};
+use crate::quantities::kib;
 use glint_bake_core::area_light::AreaLightMaterial;
 use glint_bake_core::area_light::baked::Maps;
 use glint_bake_core::area_light::baked::decode_tables;
 use glint_bake_core::area_light::eval::LOBES;
 use glint_bake_core::area_light::quality::{Comparison, RadianceGrid, highlight_error, scenes};
 use glint_bake_core::area_light::reference::Scene as Light;
+use glint_bake_core::area_light::sections;
 use glint_bake_core::normal_map::NormalMap;
+use glint_formats::Pack;
 
 /// Formats, and whether roughness has a direction, from few bytes to many.
-const SETTINGS: [(&str, bool); 4] = [("snorm8", false), ("f16", false), ("snorm8", true), ("f16", true)];
+const SETTINGS: [(Format, bool); 4] =
+    [(Format::Snorm8, false), (Format::F16, false), (Format::Snorm8, true), (Format::F16, true)];
 /// Sizes of footprints that are measured, at most, and places of each.
 const SIZES: usize = 3;
 const PLACES: u32 = 8;
@@ -24,56 +30,61 @@ const GRID_OVER_ALPHA: f64 = 8.0;
 const GRID_RANGE: (f64, f64) = (49.0, 201.0);
 const TOLERANCE: f64 = 1e-3;
 const SEED: u64 = 22;
+/// Places of each size that a finished pack is measured at, and their seed.
+const MEASURED_PLACES: u32 = 12;
+const MEASURED_SEED: u64 = 1021;
 /// Places in the list of methods that are compared: ours, without and with a direction.
 const ISOTROPIC: usize = 3;
 const ANISOTROPIC: usize = 5;
 
-/// Name of the error.
-pub const MEASURE: &str = "RMSE of highlights";
-
 /// What was measured of one pack.
-pub fn candidates(drafts: &mut Drafts<'_>, scene: &Scene, view: &View) -> Result<Found, Failure> {
-    let (first, all_bytes) = highlights(drafts.make(&options([("format", "snorm8".into())]))?)?;
-    let (map, material) = *first;
-    let seen = scene.footprints(view, map.width);
+pub fn candidates(args: &Args, request: &Request<'_>) -> Result<Candidates, Failure> {
+    let view = request.surface()?;
+    let base = Args { output: request.output.to_owned(), ..args.clone() };
+    let mut first = request.choice(base.clone());
+    first.choose("format", name_of(&Format::Snorm8), |args| args.format = Format::Snorm8);
+    let ((map, material), all_bytes) = draft(&first.args)?;
+    let (low, high) = request.scene.footprints(view, map.width).sigma;
     let longest = map.width.max(map.height);
     // A look-up reads the mip whose texels are twice the standard deviation, and the next one.
-    let skip = libm::log2(2.0 * seen.sigma.0).floor().clamp(0.0, f64::from(longest.ilog2())) as u32;
+    let skip = libm::log2(2.0 * low).floor().clamp(0.0, f64::from(longest.ilog2())) as u32;
     let lights = table(f64::from(material.params.base_roughness));
     let most = f64::from(longest);
-    let sigmas = sizes((seen.sigma.0.min(most), seen.sigma.1.min(most)), SIZES);
-    let (low, high) = seen.sigma;
-    let mut found = Found {
-        measure: MEASURE,
-        seen: format!("footprints of σ {low:.2} to {high:.2} texels"),
-        dropped: Vec::new(),
-        points: Vec::new(),
-    };
+    let sigmas = sizes((low.min(most), high.min(most)), SIZES);
+    let mut found = Candidates::new(format!("footprints of σ {low:.2} to {high:.2} texels"));
     for (format, anisotropic) in SETTINGS {
-        let mut chosen = options([("format", format.into()), ("skip-mips", skip.to_string())]);
+        let mut choice = request.choice(base.clone());
+        choice.choose("format", name_of(&format), |args| args.format = format);
+        choice.choose("skip-mips", skip, |args| args.skip_mips = skip);
         if anisotropic {
-            chosen.push(("anisotropic".into(), String::new()));
+            choice.choose("anisotropic", "", |args| args.anisotropic = true);
         }
-        chosen.retain(|(key, _)| !drafts.way.words.says(key));
-        if found.points.iter().any(|point| point.options == chosen) {
+        if found.has(&choice.options) {
             continue;
         }
-        let (made, bytes) = highlights(drafts.make(&chosen)?)?;
-        if found.points.is_empty() && skip > 0 && bytes < all_bytes {
-            let saved = crate::quantities::kib(all_bytes - bytes);
+        let ((map, material), bytes) = draft(&choice.args)?;
+        if found.drafts.is_empty() && skip > 0 && bytes < all_bytes {
+            let saved = kib(all_bytes - bytes);
             found.dropped.push(format!("the {skip} finest mips: no footprint reads them ({saved} in this format)"));
         }
-        let error = worst(&made.0, &made.1, &lights, &sigmas, PLACES, SEED);
-        found.points.push(Point { options: chosen, bytes, error });
+        let error = worst(&map, &material, &lights, &sigmas, PLACES, SEED);
+        found.push(choice, bytes, error);
     }
     Ok(found)
 }
 
-fn highlights((draft, bytes): (Draft, u64)) -> Result<(Box<(NormalMap, AreaLightMaterial)>, u64), Failure> {
-    match draft {
-        Draft::AreaLight(made) => Ok((made, bytes)),
-        _ => Err(Failure::new(Exit::Unexpected, "a draft for rectangle lights is something else; please report this")),
-    }
+/// The error of a baked pack at the scene's footprints, at other places than those that the plan was made at.
+pub fn measure(args: &Args, pack: &Pack, request: &Request<'_>) -> Result<f64, Failure> {
+    let view = request.surface()?;
+    // The draft is made for its map; what is measured is the file.
+    let ((map, _), _) = draft(args)?;
+    let name = sections::materials(pack).first().copied().unwrap_or_default();
+    let material = sections::from_pack(pack, name).map_err(|e| Failure::bake(request.output, &e))?;
+    let (low, high) = request.scene.footprints(view, map.width).sigma;
+    let most = f64::from(map.width.max(map.height));
+    let lights = table(f64::from(material.params.base_roughness));
+    let sigmas = sizes((low.min(most), high.min(most)), SIZES);
+    Ok(worst(&map, &material, &lights, &sigmas, MEASURED_PLACES, MEASURED_SEED))
 }
 
 /// The reference of some lights.
@@ -98,11 +109,4 @@ fn worst(
     let method = if material.params.anisotropic { ANISOTROPIC } else { ISOTROPIC };
     let error = |sigma: &f64| highlight_error(map, &maps, &tables, 2.0 * sigma, &over).rmse[method];
     sigmas.iter().map(error).fold(0.0, f64::max)
-}
-
-/// The error of a baked pack at the scene's footprints, at other places than those that the plan was made at.
-pub fn measured(map: &NormalMap, material: &AreaLightMaterial, sigma: (f64, f64), places: u32, seed: u64) -> f64 {
-    let most = f64::from(map.width.max(map.height));
-    let lights = table(f64::from(material.params.base_roughness));
-    worst(map, material, &lights, &sizes((sigma.0.min(most), sigma.1.min(most)), SIZES), places, seed)
 }

@@ -1,7 +1,11 @@
 //! Pictures of the mips of area-light maps: all mips beside each other, each as large as the first.
 
 use crate::canvas::{Canvas, heat};
+use crate::exit::Failure;
+use crate::methods::plots::{WritePlot, picture_of, stems};
+use glint_formats::area_light::{NORMALS, PARAMS, ROUGHNESS};
 use glint_formats::export::Texels;
+use glint_formats::{FourCc, Pack};
 
 const BACKGROUND: [u8; 3] = [16, 16, 20];
 /// Longer edge of a mip in the picture.
@@ -11,18 +15,18 @@ const GAP: u32 = 4;
 const COLUMNS: u32 = 4;
 
 /// Mean normals in the usual colours. They are not renormalised: where normals spread, colours turn grey.
-pub fn normals(texels: &Texels) -> Canvas {
+fn normals(texels: &Texels) -> Canvas {
     sheet(texels, |[x, y, z, _]| [x, y, z].map(|c| (127.5 * c + 127.5).clamp(0.0, 255.0) as u8))
 }
 
 /// Meso roughness α from black (0) over red and yellow to white (1).
-pub fn roughness(texels: &Texels) -> Canvas {
+fn roughness(texels: &Texels) -> Canvas {
     sheet(texels, |[_, _, _, code]| heat(alpha(code) as f32))
 }
 
 /// Roughness by direction: brightness is α along the direction in which normals vary most, the hue is that direction,
 /// grey has none.
-pub fn directions(texels: &Texels) -> Canvas {
+fn directions(texels: &Texels) -> Canvas {
     sheet(texels, |[xx, xy, yy, _]| {
         let mean = 0.5 * (xx + yy);
         let (a, b) = (0.5 * (xx - yy), xy);
@@ -60,6 +64,26 @@ fn sheet(texels: &Texels, colour: impl Fn([f64; 4]) -> [u8; 3]) -> Canvas {
         }
     }
     canvas
+}
+
+/// Makes a picture of a texture.
+type Draw = fn(&Texels) -> Canvas;
+
+/// Pictures of every material: mean normals, roughness, and roughness by direction.
+///
+/// # Errors
+/// Those of `write`.
+pub fn write_all(pack: &Pack, write: &mut WritePlot<'_>) -> Result<(), Failure> {
+    let pictures: [(FourCc, &str, Draw); 3] =
+        [(NORMALS, "mean-normals", normals), (NORMALS, "roughness", roughness), (ROUGHNESS, "directions", directions)];
+    for (stem, name) in stems(pack, PARAMS) {
+        for (kind, what, draw) in pictures {
+            if let Some(picture) = picture_of(pack, kind, name, draw) {
+                write(format!("{stem}-{what}.png"), picture.to_png())?;
+            }
+        }
+    }
+    Ok(())
 }
 
 #[cfg(test)]

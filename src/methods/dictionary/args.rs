@@ -1,6 +1,7 @@
 //! Flags of `glint-bake dictionary`.
 
-use crate::cli::RunFlags;
+use crate::cli::{OptionList, RunFlags};
+use crate::delivery::Delivery;
 use glint_bake_core::dictionary::DictionaryOptions;
 use std::path::PathBuf;
 
@@ -58,6 +59,22 @@ impl Args {
             lobe_std: self.lobe_std,
             seed: self.seed,
         }
+    }
+
+    /// Where the pack goes.
+    pub fn delivery(&self) -> Delivery<'_> {
+        Delivery { output: &self.output, inputs: &[], run: &self.run }
+    }
+
+    /// Options for provenance. Flags that do not change the pack's contents are left out.
+    pub fn option_list(&self) -> OptionList {
+        let mut options = OptionList::default();
+        options.push("marginals", self.marginals);
+        options.push("levels", self.levels);
+        options.push("entries", self.entries);
+        options.push("alpha-dict", self.alpha_dict);
+        options.push("lobe-std", self.lobe_std);
+        options
     }
 }
 

@@ -3,10 +3,12 @@
 use super::args::Args;
 use super::info::DictionaryInfo;
 use crate::cli::Terminal;
-use crate::commands::bake::Delivery;
 use crate::exit::Failure;
+use crate::methods::bake::FinishedPack;
+use crate::methods::method::provenance;
 use crate::pack;
 use glint_bake_core::dictionary::{self, quality, sections};
+use glint_bake_core::error::BakeError;
 use glint_bake_core::progress::Silent;
 use glint_formats::Codec;
 use glint_formats::provenance::Provenance;
@@ -16,11 +18,15 @@ const NAME: &str = "dictionary";
 /// What makes a dictionary smaller.
 const SMALLER: &str = "give fewer --marginals, --levels or --entries";
 
-/// Runs the subcommand, on one thread however many are offered: a dictionary takes hundredths of a second.
-pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
+/// Checks everything, then bakes, on one thread however many are offered: a dictionary takes hundredths of a second.
+pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Failure> {
     let options = args.options();
-    options.validate()?;
-    let delivery = Delivery { output: &args.output, inputs: &[], run: &args.run };
+    options.validate().map_err(|error| {
+        let too_large = matches!(error, BakeError::LimitExceeded(_));
+        let failure = Failure::from(error);
+        if too_large { Failure { message: format!("{}; {SMALLER}", failure.message), ..failure } } else { failure }
+    })?;
+    let delivery = args.delivery();
     delivery.check()?;
     delivery.check_size(4 * options.tables() * u64::from(options.entries), SMALLER)?;
     if args.run.dry_run {
@@ -29,30 +35,13 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
             args.output.display(),
             DictionaryInfo::size_line(options.marginals, options.levels, options.entries)
         ));
-        return Ok(());
+        return Ok(None);
     }
     let dictionary = dictionary::bake(&options, &Silent)?;
     let codec = if args.compress { Codec::Zstd } else { Codec::None };
     let sections = sections::to_sections(NAME, &dictionary, quality::measure(&dictionary), codec);
     drop(dictionary);
-    let bytes = pack::seal(&args.provenance(), sections)?;
-    delivery.write(bytes, SMALLER, terminal)
-}
-
-impl Args {
-    /// Where the pack comes from. Flags that do not change its contents are left out.
-    fn provenance(&self) -> Provenance {
-        let options = [
-            ("marginals", self.marginals.to_string()),
-            ("levels", self.levels.to_string()),
-            ("entries", self.entries.to_string()),
-            ("alpha-dict", self.alpha_dict.to_string()),
-            ("lobe-std", self.lobe_std.to_string()),
-        ];
-        Provenance {
-            options: options.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
-            seed: self.seed,
-            ..pack::provenance("dictionary")
-        }
-    }
+    let provenance = Provenance { seed: args.seed, ..provenance::<Args>("dictionary", args.option_list()) };
+    let bytes = pack::seal(&provenance, sections)?;
+    Ok(Some(FinishedPack { bytes, smaller: SMALLER }))
 }

@@ -1,8 +1,9 @@
 //! One slope dictionary, as numbers.
 
+use crate::methods::contents::{Item, decode_all};
 use crate::quantities::kib;
-use glint_formats::Pack;
 use glint_formats::dictionary::{DictionaryParams, MeasuredError, PARAMS, TABLE};
+use glint_formats::{Pack, SectionEntry};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -34,23 +35,19 @@ pub struct DictionaryInfo {
 impl DictionaryInfo {
     /// Describes every dictionary of a sound pack.
     pub fn all_of(pack: &Pack) -> Vec<DictionaryInfo> {
-        let entries = pack.sections().iter().filter(|entry| entry.kind == PARAMS);
-        let describe = |entry: &glint_formats::SectionEntry| {
-            let params = glint_formats::params::decode::<DictionaryParams>(&pack.payload(entry).ok()?).ok()?;
-            Some(DictionaryInfo {
-                name: entry.name.clone(),
-                marginals: params.marginals,
-                levels: params.levels,
-                entries: params.entries,
-                alpha_dict: params.alpha_dict,
-                lobe_std: params.lobe_std,
-                domain: params.domain,
-                seed: params.seed,
-                table_bytes: pack.find(TABLE, &entry.name).map_or(0, |table| table.raw_len),
-                measured: params.measured,
-            })
+        let describe = |(entry, params): (&SectionEntry, DictionaryParams)| DictionaryInfo {
+            name: entry.name.clone(),
+            marginals: params.marginals,
+            levels: params.levels,
+            entries: params.entries,
+            alpha_dict: params.alpha_dict,
+            lobe_std: params.lobe_std,
+            domain: params.domain,
+            seed: params.seed,
+            table_bytes: pack.find(TABLE, &entry.name).map_or(0, |table| table.raw_len),
+            measured: params.measured,
         };
-        entries.filter_map(describe).collect()
+        decode_all(pack, PARAMS).into_iter().map(describe).collect()
     }
 
     /// Size on one line, that of the table as a GPU holds it.
@@ -60,7 +57,7 @@ impl DictionaryInfo {
     }
 
     /// Size and error on one line.
-    pub fn accuracy_line(&self) -> String {
+    fn size_and_error(&self) -> String {
         let MeasuredError { normalisation, mean_l1_first_level, ks_last_level } = self.measured;
         format!(
             "{}, normalisation error {normalisation:.1e}, L1 of the mean at level 0 {mean_l1_first_level:.4}, KS at \
@@ -69,9 +66,18 @@ impl DictionaryInfo {
             self.levels - 1
         )
     }
+}
 
-    /// The part of the text report that is about this dictionary.
-    pub fn to_text(&self) -> String {
+impl Item for DictionaryInfo {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn accuracy_line(&self) -> Option<String> {
+        Some(self.size_and_error())
+    }
+
+    fn to_text(&self) -> String {
         let mut out = String::new();
         // Writing to a string cannot fail.
         let _ = writeln!(out, "dictionary \"{}\"", self.name);

@@ -1,8 +1,13 @@
 //! The marginals of a dictionary as an SVG: one panel a level, some marginals, the mean of all, and the target.
 
 use crate::canvas::escape;
+use crate::exit::{Exit, Failure};
+use crate::methods::plots::{WritePlot, stems};
 use glint_bake_core::dictionary::Dictionary;
 use glint_bake_core::dictionary::quality::{mean_table, target_density};
+use glint_bake_core::dictionary::sections;
+use glint_formats::Pack;
+use glint_formats::dictionary::PARAMS;
 use std::fmt::Write;
 
 const COLUMNS: u32 = 4;
@@ -14,7 +19,7 @@ const TITLE: f64 = 36.0;
 const SHOWN: u32 = 6;
 
 /// Slopes from −domain to domain; each panel has a density axis of its own, since level 0 is peaked.
-pub fn svg(name: &str, dictionary: &Dictionary) -> String {
+fn svg(name: &str, dictionary: &Dictionary) -> String {
     let options = &dictionary.options;
     let (width, height) = (
         PANEL.0 * f64::from(options.levels.min(COLUMNS)),
@@ -90,4 +95,17 @@ fn even_path(values: &[f64], most: f64) -> String {
         point(middle + (b as f64 + 0.5) * step, values[b]);
     }
     path
+}
+
+/// A picture of every dictionary: its marginals.
+///
+/// # Errors
+/// Bad input, when a dictionary cannot be used; those of `write`.
+pub fn write_all(pack: &Pack, write: &mut WritePlot<'_>) -> Result<(), Failure> {
+    for (stem, name) in stems(pack, PARAMS) {
+        let (dictionary, _) = sections::from_pack(pack, name)
+            .map_err(|e| Failure::new(Exit::BadInput, format!("dictionary {name}: {e}")))?;
+        write(format!("{stem}-marginals.svg"), svg(name, &dictionary).into_bytes())?;
+    }
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! Flags of `glint-bake environment`.
 
-use crate::cli::{RunFlags, values};
+use crate::cli::{OptionList, RunFlags, values};
+use crate::delivery::Delivery;
 use clap::ValueEnum;
 use glint_bake_core::environment::EnvironmentOptions;
 use glint_bake_core::environment::options::{DEFAULT_MIN_FACE_SIZE, LevelCount};
@@ -31,9 +32,13 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value = "256", allow_negative_numbers = true, help_heading = "Bake")]
     pub face_size: u32,
     /// Edge of a face of the last mip, which has roughness 1 [default: 8, or --face-size if smaller]
+    ///
+    /// A larger one interpolates wide lobes better and leaves fewer mips for the others.
     #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Bake")]
     pub min_face_size: Option<u32>,
     /// Radiance levels, 1 to 16, or auto: the fewest that meet --max-moment-error
+    ///
+    /// With 1, lit facets reflect the mean.
     #[arg(long, value_name = "K", default_value = "4", value_parser = level_count, help_heading = "Bake")]
     pub levels: u32,
     /// How levels are chosen: optimal, or log-uniform as in the paper
@@ -52,15 +57,21 @@ pub struct Args {
     #[arg(long, value_name = "E", default_value = "0.1", value_parser = values::positive, allow_negative_numbers = true, help_heading = "Bake")]
     pub max_moment_error: f64,
     /// Give each level a colour of its own, so that red and blue lamps make red and blue glints
+    ///
+    /// Takes 4 bytes a level and texel more.
     #[arg(long, help_heading = "Bake")]
     pub coloured: bool,
     /// Root mean square error of a mip over its mean, 0.0001 to 0.2; four times that below roughness 0.04
+    ///
+    /// When the measured texels miss it, nothing is written and the exit code is 6.
     #[arg(long, value_name = "E", default_value = "0.005", allow_negative_numbers = true, help_heading = "Bake")]
     pub max_error: f64,
     /// Filter: ndf (the paper's, D times masking) or ggx-nl (D times cosine)
     #[arg(long, value_name = "KERNEL", default_value = "ndf", hide_possible_values = true, help_heading = "Bake")]
     pub kernel: KernelArg,
     /// Texels: f16, f32, or unorm16 for levels with f16 for radiance
+    ///
+    /// Half floats may not hold a sun to a small --max-error; a warning says so.
     #[arg(long, value_name = "FORMAT", default_value = "f16", hide_possible_values = true, help_heading = "Bake")]
     pub format: FormatArg,
     /// Texels a mip that are compared with exact sums; 0 for none
@@ -74,10 +85,13 @@ pub struct Args {
     pub run: RunFlags,
 }
 
+/// `--levels` for the fewest that keep an error.
+pub const LEVELS_AUTO: &str = "auto";
+
 /// A number of levels; 0 for `auto`.
 fn level_count(text: &str) -> Result<u32, String> {
     match text {
-        "auto" => Ok(0),
+        LEVELS_AUTO => Ok(0),
         _ => text
             .parse()
             .ok()
@@ -116,7 +130,8 @@ pub enum FormatArg {
 }
 
 impl Args {
-    pub fn min_face_size(&self) -> u32 {
+    /// Edge of a face of the last mip in texels.
+    fn min_face_size(&self) -> u32 {
         self.min_face_size.unwrap_or(DEFAULT_MIN_FACE_SIZE.min(self.face_size))
     }
 
@@ -160,6 +175,31 @@ impl Args {
             name.push(c);
         }
         name
+    }
+
+    /// Where the pack goes.
+    pub fn delivery(&self) -> Delivery<'_> {
+        Delivery { output: &self.output, inputs: std::slice::from_ref(&self.input), run: &self.run }
+    }
+
+    /// Options for provenance, as they were used. Flags that do not change the pack's contents are left out.
+    pub fn option_list(&self) -> OptionList {
+        let mut options = OptionList::default();
+        options.push("face-size", self.face_size);
+        options.push("min-face-size", self.min_face_size());
+        match self.levels {
+            0 => options.push("levels", LEVELS_AUTO),
+            count => options.push("levels", count),
+        }
+        options.push_choice("level-choice", &self.level_choice);
+        options.push("floor", self.floor);
+        options.push("max-moment-error", self.max_moment_error);
+        options.push("coloured", self.coloured);
+        options.push("max-error", self.max_error);
+        options.push_choice("kernel", &self.kernel);
+        options.push_choice("format", &self.format);
+        options.push("measure", self.measure);
+        options
     }
 }
 

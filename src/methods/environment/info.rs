@@ -1,8 +1,9 @@
 //! One environment, as numbers.
 
+use crate::methods::contents::{Item, decode_all};
 use crate::quantities::{kib, percent};
-use glint_formats::Pack;
 use glint_formats::environment::{ALBEDO, COLOURS, EnvironmentParams, INDICATORS, PARAMS, RADIANCE};
+use glint_formats::{Pack, SectionEntry};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -20,18 +21,16 @@ pub struct EnvironmentInfo {
 impl EnvironmentInfo {
     /// Describes every environment of a sound pack.
     pub fn all_of(pack: &Pack) -> Vec<EnvironmentInfo> {
-        let entries = pack.sections().iter().filter(|entry| entry.kind == PARAMS);
-        let describe = |entry: &glint_formats::SectionEntry| {
-            let params = glint_formats::params::decode::<EnvironmentParams>(&pack.payload(entry).ok()?).ok()?;
+        let describe = |(entry, params): (&SectionEntry, EnvironmentParams)| {
             let textures = [RADIANCE, INDICATORS, COLOURS, ALBEDO];
             let bytes = textures.iter().filter_map(|kind| Some(pack.find(*kind, &entry.name)?.raw_len)).sum();
-            Some(EnvironmentInfo { name: entry.name.clone(), params, texture_bytes: bytes })
+            EnvironmentInfo { name: entry.name.clone(), params, texture_bytes: bytes }
         };
-        entries.filter_map(describe).collect()
+        decode_all(pack, PARAMS).into_iter().map(describe).collect()
     }
 
     /// Size and error on one line.
-    pub fn accuracy_line(&self) -> String {
+    fn size_and_error(&self) -> String {
         let params = &self.params;
         let measured = &params.measured;
         let worst = |of: fn(&glint_formats::environment::MeasuredMip) -> f64| {
@@ -55,9 +54,18 @@ impl EnvironmentInfo {
             percent(measured.second_moment)
         )
     }
+}
 
-    /// The part of the text report that is about this environment.
-    pub fn to_text(&self) -> String {
+impl Item for EnvironmentInfo {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn accuracy_line(&self) -> Option<String> {
+        Some(self.size_and_error())
+    }
+
+    fn to_text(&self) -> String {
         let params = &self.params;
         let measured = &params.measured;
         let mut out = String::new();

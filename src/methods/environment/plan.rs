@@ -1,16 +1,18 @@
 //! Drafts of environments: the smallest faces and the fewest levels that keep an error over the scene's roughnesses.
 
-use crate::exit::{Exit, Failure};
-use crate::methods::Draft;
-use crate::plan::USED;
-use crate::plan::{Drafts, Found, Point, options};
-use crate::project::scene::Lobes;
+use super::args::{Args, LEVELS_AUTO};
+use super::bake::draft;
+use crate::exit::Failure;
+use crate::methods::bake::Candidates;
+use crate::methods::planning::{Request, USED};
 use glam::DVec3;
-use glint_bake_core::environment::eval::environment_radiance;
+use glint_bake_core::environment::eval::environment_mip;
 use glint_bake_core::environment::image::luminance;
+use glint_bake_core::environment::lookup::radiance_at;
 use glint_bake_core::environment::reference::filtered;
-use glint_bake_core::environment::{Environment, EnvironmentImage};
+use glint_bake_core::environment::{Environment, EnvironmentImage, sections};
 use glint_bake_core::rng::{ItemRng, Purpose};
+use glint_formats::Pack;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -21,6 +23,8 @@ const DIRECTIONS: u32 = 48;
 /// Roughnesses, from one end of the range to the other.
 const ROUGHNESSES: u32 = 3;
 const SEED: u64 = 23;
+/// Seed of the directions that a finished pack is measured at.
+const MEASURED_SEED: u64 = 1021;
 
 /// A look-up and what it should give.
 struct Lookup {
@@ -29,48 +33,42 @@ struct Lookup {
     luminance: f64,
 }
 
-/// Name of the error.
-pub const MEASURE: &str = "RMSE of radiance";
-
 /// What was measured of one environment. Larger faces are not tried once an error is met.
-pub fn candidates(drafts: &mut Drafts<'_>, lobes: &Lobes, budget: f64) -> Result<Found, Failure> {
-    let (low, high) = lobes.alpha;
-    let mut found = Found {
-        measure: MEASURE,
-        seen: format!("roughness α {low} to {high}"),
-        dropped: Vec::new(),
-        points: Vec::new(),
-    };
+pub fn candidates(args: &Args, request: &Request<'_>) -> Result<Candidates, Failure> {
+    let (low, high) = request.environment()?.alpha;
+    let base = Args { output: request.output.to_owned(), ..args.clone() };
+    let mut found = Candidates::new(format!("roughness α {low} to {high}"));
     let mut lookups: Option<Vec<Lookup>> = None;
     for size in FACE_SIZES {
-        let mut chosen = options([
-            ("face-size", size.to_string()),
-            ("levels", "auto".into()),
-            ("max-moment-error", budget.to_string()),
-        ]);
-        if drafts.way.words.says("levels") {
-            chosen.retain(|(key, _)| key == "face-size");
+        let mut choice = request.choice(base.clone());
+        choice.choose("face-size", size, |args| args.face_size = size);
+        // A number of levels leaves no error to ask for.
+        if !request.fixes("levels") {
+            choice.choose("levels", LEVELS_AUTO, |args| args.levels = 0);
+            choice.choose("max-moment-error", request.budget, |args| args.max_moment_error = request.budget);
         }
-        chosen.retain(|(key, _)| !drafts.way.words.says(key));
-        if found.points.iter().any(|point| point.options == chosen) {
+        if found.has(&choice.options) {
             continue;
         }
-        let (draft, bytes) = drafts.make(&chosen)?;
-        let Draft::Environment(made) = draft else {
-            return Err(Failure::new(
-                Exit::Unexpected,
-                "a draft of an environment is something else; please report this",
-            ));
-        };
-        let (image, environment) = *made;
-        let lookups = lookups.get_or_insert_with(|| exact(&image, &environment, lobes.alpha, SEED));
+        let ((image, environment), bytes) = draft(&choice.args)?;
+        let lookups = lookups.get_or_insert_with(|| exact(&image, &environment, (low, high), SEED));
         let error = error(&environment, lookups);
-        found.points.push(Point { options: chosen, bytes, error });
-        if error <= USED * budget {
+        found.push(choice, bytes, error);
+        if error <= USED * request.budget {
             break;
         }
     }
     Ok(found)
+}
+
+/// The error of a baked environment, at other directions than those that the plan was made at.
+pub fn measure(args: &Args, pack: &Pack, request: &Request<'_>) -> Result<f64, Failure> {
+    let alpha = request.environment()?.alpha;
+    // The draft is made for its image; what is measured is the file.
+    let ((image, _), _) = draft(args)?;
+    let name = sections::environments(pack).first().copied().unwrap_or_default();
+    let baked = sections::from_pack(pack, name).map_err(|e| Failure::bake(request.output, &e))?;
+    Ok(error(&baked, &exact(&image, &baked, alpha, MEASURED_SEED)))
 }
 
 fn exact(image: &EnvironmentImage, environment: &Environment, (low, high): (f64, f64), seed: u64) -> Vec<Lookup> {
@@ -93,7 +91,8 @@ fn error(environment: &Environment, lookups: &[Lookup]) -> f64 {
     let of = |first: usize| {
         let (mut errors, mut power) = (0.0, 0.0);
         for lookup in lookups.iter().skip(first).step_by(ROUGHNESSES as usize) {
-            let found = environment_radiance(environment, lookup.direction.as_vec3(), lookup.alpha as f32);
+            let mip = environment_mip(environment, lookup.alpha as f32);
+            let found = radiance_at(environment, lookup.direction.as_vec3(), mip);
             let found = luminance([0, 1, 2].map(|c| f64::from(found[c])));
             errors += (found - lookup.luminance).powi(2);
             power += lookup.luminance.powi(2);
@@ -101,9 +100,4 @@ fn error(environment: &Environment, lookups: &[Lookup]) -> f64 {
         if power > 0.0 { libm::sqrt(errors / power) } else { 0.0 }
     };
     (0..ROUGHNESSES as usize).map(of).fold(0.0, f64::max)
-}
-
-/// The error of a baked environment, at other directions than those that the plan was made at.
-pub fn measured(image: &EnvironmentImage, environment: &Environment, alpha: (f64, f64), seed: u64) -> f64 {
-    error(environment, &exact(image, environment, alpha, seed))
 }

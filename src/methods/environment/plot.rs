@@ -1,8 +1,12 @@
 //! Pictures of environments: faces of cubes beside each other, +X −X +Y −Y +Z −Z, a row a mip or a level.
 
 use crate::canvas::Canvas;
+use crate::exit::Failure;
+use crate::methods::plots::{WritePlot, payload, picture_of, stems};
 use crate::preview::tone;
 use glam::{DVec3, Vec3};
+use glint_formats::Pack;
+use glint_formats::environment::{COLOURS, INDICATORS, PARAMS, RADIANCE};
 use glint_formats::export::Texels;
 
 const BACKGROUND: [u8; 3] = [16, 16, 20];
@@ -16,7 +20,7 @@ const MAX_ROWS: u32 = 10;
 const MIDDLE: f32 = 0.3;
 
 /// Tone-mapped radiance, a row a mip, all exposed alike.
-pub fn radiance(texels: &Texels) -> Canvas {
+fn radiance(texels: &Texels) -> Canvas {
     let colour = |mip, face, i, j| {
         let image = texels.texture.image(mip, 0, face);
         let [r, g, b, _] = texels.at(&image, i, j);
@@ -36,7 +40,7 @@ pub fn radiance(texels: &Texels) -> Canvas {
 
 /// Shares of the levels, the darkest on top: white is the whole. Left the first mip, right one of middling roughness.
 /// Coloured levels are tinted as they are.
-pub fn levels(texels: &Texels, colours: Option<&Texels>) -> Canvas {
+fn levels(texels: &Texels, colours: Option<&Texels>) -> Canvas {
     let texture = texels.texture;
     let share = |level: u32, mip, face, i, j| {
         let of = |level: u32| {
@@ -90,4 +94,22 @@ fn sheet<P: Fn(u32, u32) -> [u8; 3]>(columns: u32, rows: u32, face: impl Fn(u32,
         }
     }
     canvas
+}
+
+/// Pictures of every environment: radiance and the shares of levels.
+///
+/// # Errors
+/// Those of `write`.
+pub fn write_all(pack: &Pack, write: &mut WritePlot<'_>) -> Result<(), Failure> {
+    for (stem, name) in stems(pack, PARAMS) {
+        if let Some(picture) = picture_of(pack, RADIANCE, name, radiance) {
+            write(format!("{stem}-radiance.png"), picture.to_png())?;
+        }
+        let colours = payload(pack, COLOURS, name);
+        let colours = colours.as_ref().and_then(|(texture, bytes)| Texels::new(*texture, bytes));
+        if let Some(picture) = picture_of(pack, INDICATORS, name, |texels| levels(texels, colours.as_ref())) {
+            write(format!("{stem}-levels.png"), picture.to_png())?;
+        }
+    }
+    Ok(())
 }

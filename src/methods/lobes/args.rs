@@ -1,10 +1,13 @@
 //! Flags of `glint-bake lobes`.
 
 use super::surface::SurfaceFlags;
-use crate::cli::normal_maps::InputFlags;
-use crate::cli::{RunFlags, values};
+use crate::cli::normal_maps::{InputFlags, check_name, unique_name};
+use crate::cli::{OptionList, RunFlags, values};
+use crate::delivery::Delivery;
+use crate::exit::Failure;
 use clap::ValueEnum;
 use glint_bake_core::lobes::options::{LobesOptions, NormalsChoice, default_cell};
+use glint_bake_core::synthesis::SynthesisOptions;
 use glint_formats::lobes::{Filter, LobeStorage, Merge};
 use std::path::PathBuf;
 
@@ -68,15 +71,22 @@ pub struct Reduction {
     #[arg(long, value_name = "N", default_value = "4")]
     pub seeds: u32,
     /// Take each texel's normal as it is, without filtering: for maps of flakes
+    ///
+    /// Neighbours of flakes have nothing between them.
     #[arg(long)]
     pub nearest: bool,
     /// How lobes are stored
     #[arg(long, value_name = "STORAGE", default_value = "packed")]
     pub storage: StorageArg,
-    /// Bits a channel of the stored normals
+    /// Bits a channel that stored normals are rounded to; 8 make smaller compressed packs
+    ///
+    /// Auto is 8 where rounding stays below 0.03 of the roughness, root mean square.
     #[arg(long, value_name = "BITS", default_value = "auto")]
     pub normals: NormalsArg,
     /// Error E1 asked of every footprint size that the bake measures, on average; missing it fails the bake
+    ///
+    /// Sizes are standard deviations of 2 to 32 texels, up to a quarter of the map's edge. When the bake misses it,
+    /// nothing is written and the exit code is 6.
     #[arg(long, value_name = "E1", value_parser = values::positive)]
     pub max_error: Option<f64>,
     /// Seed of random numbers, for k-means and for the choice of patches
@@ -109,10 +119,10 @@ pub enum StorageArg {
 pub enum NormalsArg {
     /// 8 where rounding does not show at the roughness, else 16
     Auto,
-    /// 2 bytes a texel
+    /// steps of 1/127
     #[value(name = "8")]
     Eight,
-    /// 4 bytes a texel
+    /// steps of 1/32767
     #[value(name = "16")]
     Sixteen,
 }
@@ -143,5 +153,44 @@ impl Reduction {
             seed: self.seed,
             ..LobesOptions::default()
         }
+    }
+}
+
+impl Args {
+    /// Where the pack goes.
+    pub fn delivery(&self) -> Delivery<'_> {
+        Delivery { output: &self.output, inputs: std::slice::from_ref(&self.map), run: &self.run }
+    }
+
+    /// Name of the map or surface.
+    ///
+    /// # Errors
+    /// Usage, when it cannot be one.
+    pub fn name(&self) -> Result<String, Failure> {
+        let Some(name) = &self.name else { return Ok(unique_name(&self.map, &[])) };
+        check_name(name)?;
+        Ok(name.clone())
+    }
+
+    /// Options for provenance, as they were used. Flags that do not change the pack's bytes are left out.
+    pub fn option_list(&self, used: &LobesOptions, synthesis: Option<&SynthesisOptions>) -> OptionList {
+        let given = &self.reduction;
+        let mut options = OptionList::default();
+        options.push("roughness", given.roughness);
+        options.push("k", given.k);
+        options.push("cell", used.cell_texels);
+        options.push_choice("merge", &given.merge);
+        options.push("seeds", given.seeds);
+        options.push("nearest", given.nearest);
+        options.push_choice("storage", &given.storage);
+        options.push_choice("normals", &given.normals);
+        options.extend(self.input.option_list());
+        if let Some(synthesis) = synthesis {
+            options.extend(self.surface.option_list(synthesis));
+        }
+        if let Some(error) = given.max_error {
+            options.push("max-error", error);
+        }
+        options
     }
 }

@@ -2,17 +2,16 @@
 
 use super::args::Args;
 use crate::cli::Terminal;
-use crate::cli::normal_maps::{check_name, unique_name};
-use crate::commands::bake::Delivery;
 use crate::exit::{Exit, Failure};
 use crate::input::{LoadedMap, digest, load_normal_map};
+use crate::methods::bake::FinishedPack;
+use crate::methods::method::provenance;
 use crate::pack;
 use crate::progress::Stages;
 use crate::quantities::kib;
-use clap::ValueEnum;
 use glint_bake_core::lobes::options::LobesOptions;
 use glint_bake_core::lobes::{self, sections};
-use glint_bake_core::surface::{self, Surface};
+use glint_bake_core::surface::{self, SurfaceOptions};
 use glint_bake_core::synthesis::SynthesisOptions;
 use glint_formats::Codec;
 use glint_formats::Section;
@@ -26,21 +25,15 @@ const SMALLER: &str = "give a larger --cell, fewer lobes with --k, or a part of 
 /// Edge of a surface's finest cells in texels.
 const SURFACE_CELL: u32 = 8;
 
-/// Runs the subcommand.
-pub fn run(args: Args, terminal: Terminal) -> Result<(), Failure> {
-    let threads = args.run.threads;
-    crate::cli::on_threads(threads, || bake(&args, terminal))?
-}
-
-fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
+/// Checks everything, then bakes.
+pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Failure> {
     args.reduction.options(1, 1).validate()?;
     let synthesis = args.surface.options(args.reduction.seed)?;
     if let Some(synthesis) = &synthesis {
         synthesis.validate()?;
     }
     let name = args.name()?;
-    let inputs = [args.map.clone()];
-    let delivery = Delivery { output: &args.output, inputs: &inputs, run: &args.run };
+    let delivery = args.delivery();
     delivery.check()?;
     args.check_normal_map()?;
     let loaded = load_normal_map(&args.map, &args.input.options(args.run.max_memory))?;
@@ -57,8 +50,9 @@ fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         }
         Some(synthesis) => {
             options.cell_texels = args.reduction.cell.unwrap_or(SURFACE_CELL);
-            surface::bake::check(&loaded.map, &options, synthesis).map_err(|e| Failure::bake(&args.map, &e))?;
-            surface::bake::most_bytes(width, height, &options, synthesis)
+            let options = SurfaceOptions { lobes: options.clone(), synthesis: *synthesis };
+            options.check(&loaded.map).map_err(|e| Failure::bake(&args.map, &e))?;
+            options.most_bytes(width, height)
         }
     };
     delivery.check_size(bytes, SMALLER)?;
@@ -75,21 +69,15 @@ fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     if args.run.dry_run {
         let output = args.output.display();
         terminal.say(&format!("would write {output}: \"{name}\", {line}; dry run, nothing was written"));
-        return Ok(());
+        return Ok(None);
     }
     terminal.detail(&format!("{}: {line}, {}", args.map.display(), loaded.convention));
     let sections = args.sections(&name, &loaded, &options, synthesis.as_ref(), terminal)?;
     let bytes = pack::seal(&args.provenance(&options, synthesis.as_ref(), &loaded, digest), sections)?;
-    delivery.write(bytes, SMALLER, terminal)
+    Ok(Some(FinishedPack { bytes, smaller: SMALLER }))
 }
 
 impl Args {
-    fn name(&self) -> Result<String, Failure> {
-        let Some(name) = &self.name else { return Ok(unique_name(&self.map, &[])) };
-        check_name(name)?;
-        Ok(name.clone())
-    }
-
     /// Says whether the surface's normal map can be written beside the other outputs.
     fn check_normal_map(&self) -> Result<(), Failure> {
         let outputs = [Some(&self.output), self.run.report.as_ref(), self.run.depfile.as_ref()];
@@ -113,8 +101,8 @@ impl Args {
             self.check_error(&baked.params.measured)?;
             return Ok(sections::to_sections(name, &baked, codec));
         };
-        let baked: Surface =
-            surface::bake(map, options, synthesis, &progress).map_err(|e| Failure::bake(&self.map, &e))?;
+        let options = SurfaceOptions { lobes: options.clone(), synthesis: *synthesis };
+        let baked = surface::bake(map, &options, &progress).map_err(|e| Failure::bake(&self.map, &e))?;
         self.check_error(&baked.lobes.params.measured)?;
         self.surface.write_normal_map(&baked, map)?;
         Ok(surface::sections::to_sections(name, &baked, codec))
@@ -134,7 +122,7 @@ impl Args {
         Err(Failure::new(Exit::LimitExceeded, message))
     }
 
-    /// Where the pack comes from. Flags that do not change its bytes are left out.
+    /// Where the pack comes from.
     fn provenance(
         &self,
         used: &LobesOptions,
@@ -142,33 +130,13 @@ impl Args {
         loaded: &LoadedMap,
         digest: InputDigest,
     ) -> Provenance {
-        let debug = |value: &dyn std::fmt::Debug| format!("{value:?}").to_ascii_lowercase();
-        let of = &self.reduction;
-        let mut options = vec![
-            ("roughness", of.roughness.to_string()),
-            ("k", of.k.to_string()),
-            ("cell", used.cell_texels.to_string()),
-            ("merge", debug(&of.merge)),
-            ("seeds", of.seeds.to_string()),
-            ("nearest", of.nearest.to_string()),
-            ("storage", debug(&of.storage)),
-            ("normals", of.normals.to_possible_value().map_or_else(String::new, |v| v.get_name().to_owned())),
-        ];
-        options.extend(self.input.provenance());
-        if let Some(synthesis) = synthesis {
-            options.extend(self.surface.provenance(synthesis));
-        }
-        if let Some(error) = of.max_error {
-            options.push(("max-error", error.to_string()));
-        }
         let notes = loaded.warnings.iter().map(|warning| format!("{}: {warning}", digest.name)).collect();
         Provenance {
-            options: options.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
-            seed: of.seed,
+            seed: self.reduction.seed,
             inputs: vec![digest],
             normal_convention: self.input.normal_convention(),
             notes,
-            ..pack::provenance("lobes")
+            ..provenance::<Args>("lobes", self.option_list(used, synthesis))
         }
     }
 }

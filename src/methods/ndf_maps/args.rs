@@ -1,9 +1,13 @@
 //! Flags of `glint-bake ndf-maps`.
 
 use crate::cli::normal_maps::InputFlags;
-use crate::cli::{RunFlags, values};
+use crate::cli::{OptionList, RunFlags, values};
+use crate::delivery::Delivery;
+use crate::exit::Failure;
 use clap::ValueEnum;
-use glint_bake_core::ndf_maps::transform::TransformRanges;
+use glint_bake_core::ndf_maps::options::{
+    FINEST_TILE, NdfMapsOptions, PlacementOptions, ROUGHNESS_RANGE, StochasticOptions, TransformRanges,
+};
 use glint_formats::ndf_maps::DensityStorage;
 use std::path::PathBuf;
 
@@ -38,12 +42,17 @@ pub struct Args {
     pub preset: Preset,
     /// Error E1 asked of tiles on average, three times that of each; given, missing it fails the bake
     /// [default: by preset]
+    ///
+    /// When it is given and the bake misses it, nothing is written and the exit code is 6.
     #[arg(long, value_name = "E1", value_parser = values::positive, help_heading = "Bake")]
     pub max_error: Option<f64>,
     /// How densities are stored; paper is 128 x 128 floats a tile [default: by preset]
     #[arg(long, value_name = "STORAGE", help_heading = "Bake")]
     pub storage: Option<Storage>,
     /// Edge in texels of the smallest tiles that are kept, a power of two; larger where no footprint is smaller
+    ///
+    /// Where every footprint is as wide as a tile of so many texels, finer ones are never read; narrower ones then
+    /// see lobes, one a texel.
     #[arg(long, value_name = "TEXELS", default_value = "2", value_parser = tile_edge, help_heading = "Bake")]
     pub min_tile: u32,
     /// Compress the pack's sections with Zstandard
@@ -59,6 +68,9 @@ pub struct Args {
     pub placement: PlacementArg,
     /// Transforms of placed copies: rotate=A..B (degrees), mirror, scale=A..B, stretch=A..B, shear=A..B, or none
     /// [default: none when tiled, rotate=0..360,mirror when stochastic]
+    ///
+    /// scale is the size on the surface, stretch the width of the normals; a single value stands for both ends. Tiled
+    /// copies share one transform, so they take single values only.
     #[arg(long, value_name = "LIST", value_parser = values::transforms, help_heading = "Placement")]
     pub transforms: Option<TransformRanges>,
     /// Different transforms of a stochastic placement, 1 to 32
@@ -132,8 +144,13 @@ pub enum PlacementArg {
 }
 
 impl Args {
+    /// Where the pack goes.
+    pub fn delivery(&self) -> Delivery<'_> {
+        Delivery { output: &self.output, inputs: &self.maps, run: &self.run }
+    }
+
     /// Error asked of every tile.
-    pub fn wanted_error(&self) -> f64 {
+    fn wanted_error(&self) -> f64 {
         self.max_error.unwrap_or(match self.preset {
             Preset::Draft => 0.05,
             Preset::Balanced => 0.01,
@@ -142,12 +159,98 @@ impl Args {
     }
 
     /// How densities are stored.
-    pub fn wanted_storage(&self) -> DensityStorage {
-        let by_preset = if self.preset == Preset::Accurate { Storage::F16 } else { Storage::U8 };
-        match self.storage.unwrap_or(by_preset) {
+    fn wanted_storage(&self) -> Storage {
+        self.storage.unwrap_or(if self.preset == Preset::Accurate { Storage::F16 } else { Storage::U8 })
+    }
+
+    /// Options of every map's bake.
+    ///
+    /// # Errors
+    /// Usage, which names the flag.
+    pub fn options(&self) -> Result<NdfMapsOptions, Failure> {
+        let (low, high) = ROUGHNESS_RANGE;
+        if !(low..=high).contains(&self.roughness) {
+            return Err(Failure::usage(format!("--roughness: expected {low} to {high}, found {}", self.roughness)));
+        }
+        Ok(NdfMapsOptions {
+            roughness: self.roughness,
+            max_error: self.wanted_error(),
+            storage: self.wanted_storage().into(),
+            min_tile: self.min_tile,
+        })
+    }
+
+    /// Options of every map's placement.
+    ///
+    /// # Errors
+    /// Usage, which names the flag.
+    pub fn placement_options(&self) -> Result<PlacementOptions, Failure> {
+        if self.placement == PlacementArg::Tiled {
+            let ranges = self.transforms.unwrap_or_default();
+            // One transform serves every copy, so a range would silently become its lower end.
+            let varies =
+                [ranges.rotate_degrees, ranges.scale, ranges.stretch, ranges.shear].iter().any(|(a, b)| a != b);
+            if varies || ranges.mirror {
+                return Err(Failure::usage(
+                    "--transforms: a tiled placement has one transform for all copies; expected single values such as \
+                 rotate=30, found a range or mirror. Give --placement stochastic for different ones",
+                ));
+            }
+            return Ok(PlacementOptions::Tiled(ranges));
+        }
+        if !(0.25..=8.0).contains(&self.spacing) {
+            return Err(Failure::usage(format!("--spacing: expected 0.25 to 8, found {}", self.spacing)));
+        }
+        Ok(PlacementOptions::Stochastic(StochasticOptions {
+            ranges: self.transforms.unwrap_or(StochasticOptions::default().ranges),
+            palette: self.palette,
+            cells: self.cells,
+            spacing: self.spacing,
+            seed: self.seed,
+        }))
+    }
+
+    /// Options for provenance, as they were used. Flags that do not change the pack's bytes are left out.
+    pub fn option_list(&self, used: &NdfMapsOptions, placement: &PlacementOptions) -> OptionList {
+        let mut options = OptionList::default();
+        options.push("roughness", self.roughness);
+        options.push("max-error", used.max_error);
+        options.push_choice("storage", &Storage::from(used.storage));
+        options.extend(self.input.option_list());
+        options.push_choice("placement", &self.placement);
+        let ranges = match placement {
+            PlacementOptions::Tiled(ranges) => ranges,
+            PlacementOptions::Stochastic(options) => &options.ranges,
+        };
+        options.push("transforms", values::transforms_text(ranges));
+        if self.placement == PlacementArg::Stochastic {
+            options.push("palette", self.palette);
+            options.push("cells", self.cells);
+            options.push("spacing", self.spacing);
+        }
+        if self.min_tile != FINEST_TILE {
+            options.push("min-tile", self.min_tile);
+        }
+        options
+    }
+}
+
+impl From<Storage> for DensityStorage {
+    fn from(storage: Storage) -> DensityStorage {
+        match storage {
             Storage::U8 => DensityStorage::SqrtU8,
             Storage::F16 => DensityStorage::F16,
             Storage::Paper => DensityStorage::PaperF32,
+        }
+    }
+}
+
+impl From<DensityStorage> for Storage {
+    fn from(storage: DensityStorage) -> Storage {
+        match storage {
+            DensityStorage::SqrtU8 => Storage::U8,
+            DensityStorage::F16 => Storage::F16,
+            DensityStorage::PaperF32 => Storage::Paper,
         }
     }
 }

@@ -1,12 +1,16 @@
 //! One material of the tiny-example method, as numbers.
 
+use super::args::Storage;
+use crate::cli::values::name_of;
+use crate::methods::contents::{Item, decode_all};
 use crate::quantities::{kib, percent};
-use glint_bake_core::ndf_maps::eval::Material;
-use glint_formats::Wrap;
+use glint_bake_core::ndf_maps::baked::Material;
+use glint_bake_core::ndf_maps::sections;
 use glint_formats::ndf_maps::{
-    CLASSES, DENSITY, DensityStorage, MeasuredError, NOISE, NORMALS, PALETTE, PARAMS, PLACEMENT, PlacementKind, TILES,
+    CLASSES, DENSITY, LAYERS, LayeredMaterial, MeasuredError, NOISE, NORMALS, PALETTE, PARAMS, PLACEMENT,
+    PlacementKind, TILES,
 };
-use glint_formats::{FourCc, Pack};
+use glint_formats::{FourCc, Pack, Wrap};
 use serde::Serialize;
 
 /// Bytes of one tile in the paper's layout: 128 × 128 floats.
@@ -26,7 +30,7 @@ pub struct MaterialInfo {
     /// σ_r.
     pub intrinsic_roughness: f32,
     /// `u8`, `f16` or `paper`.
-    pub storage: &'static str,
+    pub storage: String,
     /// Levels, finest first.
     pub levels: Vec<LevelInfo>,
     /// Bytes of each part once decompressed.
@@ -86,7 +90,7 @@ pub enum PlacementInfo {
 
 impl MaterialInfo {
     /// Describes a material of a sound pack.
-    pub fn of(name: &str, material: &Material, pack: &Pack) -> MaterialInfo {
+    fn of(name: &str, material: &Material, pack: &Pack) -> MaterialInfo {
         let params = &material.maps.params;
         let raw = |kind: FourCc| pack.find(kind, name).map_or(0, |entry| entry.raw_len);
         let placement = raw(PALETTE) + raw(NOISE) + raw(CLASSES);
@@ -107,7 +111,7 @@ impl MaterialInfo {
                 Wrap::Clamp => "clamp",
             },
             intrinsic_roughness: params.intrinsic_roughness,
-            storage: storage_name(params.storage),
+            storage: name_of(&Storage::from(params.storage)),
             levels: levels(material),
             bytes,
             max_error: params.max_error,
@@ -135,8 +139,14 @@ impl MaterialInfo {
         self.bytes.tiles + self.bytes.density + self.bytes.normals
     }
 
+    /// Describes every material of a sound pack.
+    pub fn all_of(pack: &Pack) -> Vec<MaterialInfo> {
+        let describe = |name| Some(MaterialInfo::of(name, &sections::from_pack(pack, name).ok()?, pack));
+        sections::materials(pack).into_iter().filter_map(describe).collect()
+    }
+
     /// Size and error on one line.
-    pub fn accuracy_line(&self) -> String {
+    fn size_and_error(&self) -> String {
         let factor = self.bytes.paper as f64 / self.map_bytes().max(1) as f64;
         format!(
             "{} tiles, {} (paper's layout {}, {factor:.0}×), E₁ mean {}, p95 {}, worst {}",
@@ -146,6 +156,80 @@ impl MaterialInfo {
             percent(self.measured.mean),
             percent(self.measured.p95),
             percent(self.measured.worst)
+        )
+    }
+}
+
+impl Item for MaterialInfo {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn accuracy_line(&self) -> Option<String> {
+        Some(self.size_and_error())
+    }
+
+    fn to_text(&self) -> String {
+        let bytes = &self.bytes;
+        let mut out = String::new();
+        let mut line = |text: String| {
+            out.push_str(&text);
+            out.push('\n');
+        };
+        line(format!("material \"{}\"", self.name));
+        line(format!("  example      {} × {} texels, {}", self.width, self.height, self.wrap));
+        line(format!("  σ_r          {}", self.intrinsic_roughness));
+        line(format!("  storage      {}, E₁ {} asked", self.storage, percent(f64::from(self.max_error))));
+        line("  levels       tile      tiles   density texels   E₁ mean     worst".into());
+        for level in &self.levels {
+            let grid = format!("{} × {}", level.tiles_x, level.tiles_y);
+            let (mean, worst) = (percent(level.mean_error), percent(level.worst_error));
+            line(format!(
+                "           {:>8} {grid:>10} {:>16} {mean:>9} {worst:>9}",
+                level.tile_texels, level.density_texels
+            ));
+        }
+        line(format!("  accuracy     {}", self.size_and_error()));
+        line(format!("  energy       {:.1e} at most from 1", self.measured.energy));
+        line(format!(
+            "  bytes        tiles {}, density {}, normals {}, placement {}",
+            bytes.tiles, bytes.density, bytes.normals, bytes.placement
+        ));
+        line(match self.placement {
+            PlacementInfo::Tiled => "  placement    tiled".into(),
+            PlacementInfo::Stochastic { cells_x, cells_y, cell_texels, seed, palette } => format!(
+                "  placement    stochastic, {cells_x} × {cells_y} cells of {cell_texels} texels, {palette} transforms, seed {seed}"
+            ),
+        });
+        out
+    }
+}
+
+/// A two-layer material.
+#[derive(Debug, Serialize)]
+#[serde(transparent)]
+pub struct LayersInfo(pub LayeredMaterial);
+
+impl LayersInfo {
+    /// Every two-layer material of a sound pack.
+    pub fn all_of(pack: &Pack) -> Vec<LayersInfo> {
+        decode_all(pack, LAYERS).into_iter().map(|(_, layers)| LayersInfo(layers)).collect()
+    }
+}
+
+impl Item for LayersInfo {
+    fn name(&self) -> &str {
+        &self.0.coat
+    }
+
+    fn accuracy_line(&self) -> Option<String> {
+        None
+    }
+
+    fn to_text(&self) -> String {
+        let LayeredMaterial { coat, base, coat_f0, base_f0: [r, g, b] } = &self.0;
+        format!(
+            "two layers: \"{coat}\" over \"{base}\"\n  F0 of the coat  {coat_f0}\n  F0 of the base  {r}, {g}, {b}\n"
         )
     }
 }
@@ -165,13 +249,4 @@ fn levels(material: &Material) -> Vec<LevelInfo> {
         }
     };
     material.maps.params.levels.iter().map(describe).collect()
-}
-
-/// The flag's value for a storage.
-pub fn storage_name(storage: DensityStorage) -> &'static str {
-    match storage {
-        DensityStorage::SqrtU8 => "u8",
-        DensityStorage::F16 => "f16",
-        DensityStorage::PaperF32 => "paper",
-    }
 }

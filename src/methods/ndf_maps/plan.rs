@@ -1,21 +1,35 @@
 //! Drafts of NDF maps: which tiles the scene's footprints read, and bytes against E₁ at those footprints.
 
+use super::args::{Args, Storage};
+use super::bake::draft;
+use crate::cli::values::name_of;
 use crate::exit::{Exit, Failure};
-use crate::methods::Draft;
-use crate::plan::{Drafts, Found, Point, options, sizes};
-use crate::project::scene::{Footprints, Scene, View};
+use crate::methods::bake::Candidates;
+use crate::methods::planning::{Request, sizes};
+use crate::quantities::kib;
+use crate::scene::Footprints;
 use glam::DVec2;
 use glint_bake_core::footprint::Footprint;
-use glint_bake_core::ndf_maps::eval::Material;
-use glint_bake_core::ndf_maps::measure::ExactNdf;
+use glint_bake_core::ndf_maps::baked::Material;
+use glint_bake_core::ndf_maps::eval::EvalSettings;
+use glint_bake_core::ndf_maps::options::FINEST_TILE;
+use glint_bake_core::ndf_maps::quality::ExactNdf;
 use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
-use glint_bake_core::ndf_maps::surface::EvalSettings;
+use glint_bake_core::ndf_maps::sections;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::quality::sweep::footprints;
+use glint_formats::Pack;
 use rayon::prelude::*;
 
 /// Storage and error asked of tiles, from few bytes to many.
-const SETTINGS: [(&str, f64); 6] = [("u8", 0.2), ("u8", 0.1), ("u8", 0.05), ("u8", 0.02), ("u8", 0.01), ("f16", 0.003)];
+const SETTINGS: [(Storage, f64); 6] = [
+    (Storage::U8, 0.2),
+    (Storage::U8, 0.1),
+    (Storage::U8, 0.05),
+    (Storage::U8, 0.02),
+    (Storage::U8, 0.01),
+    (Storage::F16, 0.003),
+];
 /// Sizes of footprints that are measured, at most, and places of each.
 const SIZES: usize = 3;
 const PLACES: u32 = 6;
@@ -26,71 +40,86 @@ const PROBES: u32 = 512;
 /// Examples along the surface that footprints lie on.
 const EXTENT: f64 = 32.0;
 const SEED: u64 = 21;
+/// Places of each size that a finished pack is measured at, and their seed.
+const MEASURED_PLACES: u32 = 12;
+const MEASURED_SEED: u64 = 1021;
 
 /// Footprints that are measured together, and what they should see.
 struct Size {
     footprints: Vec<(Footprint, ExactNdf)>,
 }
 
-/// Name of the error.
-pub const MEASURE: &str = "E₁";
-
 /// What was measured of one pack.
-pub fn candidates(drafts: &mut Drafts<'_>, scene: &Scene, view: &View) -> Result<Found, Failure> {
-    let first = SETTINGS[0];
-    let asked = |(storage, error): (&str, f64), tile: u32| {
-        options([("storage", storage.into()), ("max-error", error.to_string()), ("min-tile", tile.to_string())])
-    };
-    let (made, all_bytes) = ndf(drafts.make(&asked(first, 2))?)?;
-    let seen: Vec<Footprints> = made.iter().map(|(map, _)| scene.footprints(view, map.width)).collect();
-    let tile =
-        made.iter().zip(&seen).map(|((map, material), seen)| finest_tile(map, material, seen)).min().unwrap_or(2);
-    let sizes: Vec<Vec<Size>> =
-        made.iter().zip(&seen).map(|((map, material), seen)| exact(map, material, seen, PLACES, SEED)).collect();
-    drop(made);
-    let mut found = Found { measure: MEASURE, seen: line(&seen), dropped: Vec::new(), points: Vec::new() };
-    // A preset says both, so that there is nothing to choose but the tiles.
-    let settings = if drafts.way.words.says("preset") { &SETTINGS[..1] } else { &SETTINGS[..] };
-    for setting in settings {
-        let mut chosen = asked(*setting, tile);
-        if drafts.way.words.says("preset") {
-            chosen.retain(|(key, _)| key == "min-tile");
+pub fn candidates(args: &Args, request: &Request<'_>) -> Result<Candidates, Failure> {
+    let view = request.surface()?;
+    let base = Args { output: request.output.to_owned(), ..args.clone() };
+    let asked = |(storage, error): (Storage, f64), tile: u32, settings: bool| {
+        let mut choice = request.choice(base.clone());
+        if settings {
+            choice.choose("storage", name_of(&storage), |args| args.storage = Some(storage));
+            choice.choose("max-error", error, |args| args.max_error = Some(error));
         }
-        chosen.retain(|(key, _)| !drafts.way.words.says(key));
-        if found.points.iter().any(|point| point.options == chosen) {
+        choice.choose("min-tile", tile, |args| args.min_tile = tile);
+        choice
+    };
+    let (made, all_bytes) = draft(&asked(SETTINGS[0], FINEST_TILE, true).args)?;
+    let footprints: Vec<Footprints> = made.iter().map(|(map, _)| request.scene.footprints(view, map.width)).collect();
+    let covering = made.iter().zip(&footprints);
+    let tile = covering.map(|((map, material), footprints)| finest_tile(map, material, footprints)).min();
+    let tile = tile.unwrap_or(FINEST_TILE);
+    let sizes: Vec<Vec<Size>> = made
+        .iter()
+        .zip(&footprints)
+        .map(|((map, material), footprints)| exact(map, material, footprints, PLACES, SEED))
+        .collect();
+    drop(made);
+    let mut found = Candidates::new(line(&footprints));
+    // A preset says both, so that there is nothing to choose but the tiles.
+    let preset = request.fixes("preset");
+    let settings = if preset { &SETTINGS[..1] } else { &SETTINGS[..] };
+    for setting in settings {
+        let choice = asked(*setting, tile, !preset);
+        if found.has(&choice.options) {
             continue;
         }
-        let (made, bytes) = match drafts.make(&chosen) {
-            Ok(draft) => ndf(draft)?,
+        let (made, bytes) = match draft(&choice.args) {
+            Ok(draft) => draft,
             // A setting that misses the error it asks for is none to choose.
-            Err(failure) if failure.exit == Exit::LimitExceeded && !found.points.is_empty() => continue,
+            Err(failure) if failure.exit == Exit::LimitExceeded && !found.drafts.is_empty() => continue,
             Err(failure) => return Err(failure),
         };
-        if found.points.is_empty() && bytes < all_bytes {
+        if found.drafts.is_empty() && bytes < all_bytes {
             found.dropped.push(format!(
                 "tiles finer than {tile} texels: no footprint reads them ({} at this error)",
-                crate::quantities::kib(all_bytes - bytes)
+                kib(all_bytes - bytes)
             ));
         }
         let error = made.iter().zip(&sizes).map(|((_, material), sizes)| worst(material, sizes)).fold(0.0, f64::max);
-        found.points.push(Point { options: chosen, bytes, error });
+        found.push(choice, bytes, error);
     }
     Ok(found)
 }
 
-fn ndf((draft, bytes): (Draft, u64)) -> Result<(Vec<(NormalMap, Material)>, u64), Failure> {
-    match draft {
-        Draft::NdfMaps(made) => Ok((made, bytes)),
-        _ => Err(Failure::new(Exit::Unexpected, "a draft of NDF maps is something else; please report this")),
+/// The error of a baked pack at the scene's footprints, at other places than those that the plan was made at.
+pub fn measure(args: &Args, pack: &Pack, request: &Request<'_>) -> Result<f64, Failure> {
+    let view = request.surface()?;
+    // The draft is made for its maps; what is measured is the file.
+    let (made, _) = draft(args)?;
+    let mut error = 0.0f64;
+    for (name, (map, _)) in sections::materials(pack).iter().zip(&made) {
+        let material = sections::from_pack(pack, name).map_err(|e| Failure::bake(request.output, &e))?;
+        let footprints = request.scene.footprints(view, map.width);
+        error = error.max(worst(&material, &exact(map, &material, &footprints, MEASURED_PLACES, MEASURED_SEED)));
     }
+    Ok(error)
 }
 
-fn line(seen: &[Footprints]) -> String {
-    let part = |seen: &Footprints| {
-        let (low, high) = seen.sigma;
-        format!("footprints of σ {low:.2} to {high:.2} texels, up to {:.1} times as long", seen.anisotropy)
+fn line(all: &[Footprints]) -> String {
+    let part = |footprints: &Footprints| {
+        let (low, high) = footprints.sigma;
+        format!("footprints of σ {low:.2} to {high:.2} texels, up to {:.1} times as long", footprints.anisotropy)
     };
-    seen.iter().map(part).collect::<Vec<_>>().join("; ")
+    all.iter().map(part).collect::<Vec<_>>().join("; ")
 }
 
 /// Footprints wider than this see all of an example.
@@ -103,10 +132,10 @@ fn extent(map: &NormalMap) -> DVec2 {
 }
 
 /// Edge of the finest tile that any of many footprints of the scene reads; that of the covering tile where none reads one.
-fn finest_tile(map: &NormalMap, material: &Material, seen: &Footprints) -> u32 {
+fn finest_tile(map: &NormalMap, material: &Material, visible: &Footprints) -> u32 {
     let levels = &material.maps.params.levels;
     let covering = levels.last().map_or(2, |level| level.tile_texels);
-    let (low, high) = (seen.sigma.0.min(widest(map)), seen.sigma.1.min(widest(map)));
+    let (low, high) = (visible.sigma.0.min(widest(map)), visible.sigma.1.min(widest(map)));
     let edge_of = |tile: u32| {
         let level = levels.iter().rev().find(|level| level.first_tile <= tile);
         level.map_or(covering, |level| level.tile_texels)
@@ -114,7 +143,7 @@ fn finest_tile(map: &NormalMap, material: &Material, seen: &Footprints) -> u32 {
     let probe = |k: u32| {
         // Both ends are among them, round and long.
         let share = f64::from(k / 2 % 32) / 31.0;
-        let anisotropy = if k.is_multiple_of(2) { 1.0 } else { seen.anisotropy };
+        let anisotropy = if k.is_multiple_of(2) { 1.0 } else { visible.anisotropy };
         let sigma = low * libm::pow(high / low, share);
         let all = footprints(sigma, anisotropy, extent(map), 1, SEED + u64::from(k));
         let terms = material.gather(&all[0], EvalSettings::default());
@@ -124,12 +153,12 @@ fn finest_tile(map: &NormalMap, material: &Material, seen: &Footprints) -> u32 {
 }
 
 /// What footprints of each size should see.
-fn exact(map: &NormalMap, material: &Material, seen: &Footprints, places: u32, seed: u64) -> Vec<Size> {
+fn exact(map: &NormalMap, material: &Material, visible: &Footprints, places: u32, seed: u64) -> Vec<Size> {
     let reference = SurfaceReference::new(map, material);
     let mut all = Vec::new();
     let most = widest(map);
-    for sigma in sizes((seen.sigma.0.min(most), seen.sigma.1.min(most)), SIZES) {
-        let anisotropies = if seen.anisotropy > 1.1 { vec![1.0, seen.anisotropy] } else { vec![1.0] };
+    for sigma in sizes((visible.sigma.0.min(most), visible.sigma.1.min(most)), SIZES) {
+        let anisotropies = if visible.anisotropy > 1.1 { vec![1.0, visible.anisotropy] } else { vec![1.0] };
         for anisotropy in anisotropies {
             let places = footprints(sigma, anisotropy, extent(map), places, seed);
             let exact = |footprint: Footprint| (footprint, ExactNdf::new(&reference.ndf(&footprint)));
@@ -150,9 +179,4 @@ fn worst(material: &Material, sizes: &[Size]) -> f64 {
         errors.iter().sum::<f64>() / errors.len().max(1) as f64
     };
     sizes.iter().map(mean).fold(0.0, f64::max)
-}
-
-/// The error of a baked pack at the scene's footprints, at other places than those that the plan was made at.
-pub fn measured(map: &NormalMap, material: &Material, seen: &Footprints, places: u32, seed: u64) -> f64 {
-    worst(material, &exact(map, material, seen, places, seed))
 }

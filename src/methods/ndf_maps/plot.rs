@@ -1,10 +1,14 @@
 //! Pictures of NDF tiles, of the example's normals, and of who owns which sub-region of a stochastic surface.
 
+use super::histogram;
 use crate::canvas::{Canvas, colour_wheel, heat};
+use crate::exit::{Exit, Failure};
+use crate::methods::plots::{WritePlot, stems};
 use glam::Vec2;
-use glint_bake_core::ndf_maps::bake::BakedNdfMaps;
-use glint_bake_core::ndf_maps::placement::BakedPlacement;
-use glint_formats::ndf_maps::{Level, PlacementKind};
+use glint_bake_core::ndf_maps::baked::{BakedNdfMaps, BakedPlacement};
+use glint_bake_core::ndf_maps::sections;
+use glint_formats::Pack;
+use glint_formats::ndf_maps::{Level, PARAMS, PlacementKind};
 
 const BACKGROUND: [u8; 3] = [16, 16, 20];
 const CIRCLE: [u8; 3] = [70, 74, 84];
@@ -13,8 +17,29 @@ const MAX_TILES: u32 = 64;
 /// Most cells a side of a placement picture.
 const MAX_CELLS: u32 = 64;
 
+/// Pictures of every material: tiles of each level, normals, placement, and errors of tiles.
+///
+/// # Errors
+/// Bad input, when a material cannot be used; those of `write`.
+pub fn write_all(pack: &Pack, write: &mut WritePlot<'_>) -> Result<(), Failure> {
+    for (stem, name) in stems(pack, PARAMS) {
+        let material = sections::from_pack(pack, name)
+            .map_err(|e| Failure::new(Exit::BadInput, format!("material {name}: {e}")))?;
+        for level in &material.maps.params.levels {
+            let sheet = contact_sheet(&material.maps, level);
+            write(format!("{stem}-tiles-{}.png", level.tile_texels), sheet.to_png())?;
+        }
+        write(format!("{stem}-normals.png"), normals(&material.maps).to_png())?;
+        if let Some(owners) = owners(&material.placement) {
+            write(format!("{stem}-placement.png"), owners.to_png())?;
+        }
+        write(format!("{stem}-errors.svg"), histogram::svg(name, &material.maps).into_bytes())?;
+    }
+    Ok(())
+}
+
 /// All tiles of a level: each a unit disk with +Y up, brightness the square root of density relative to the level's peak.
-pub fn contact_sheet(maps: &BakedNdfMaps, level: &Level) -> Canvas {
+fn contact_sheet(maps: &BakedNdfMaps, level: &Level) -> Canvas {
     let (columns, rows) = (level.tiles_x.min(MAX_TILES), level.tiles_y.min(MAX_TILES));
     let cell = (1024 / columns.max(rows)).clamp(24, 320);
     let mut values = vec![0.0f32; (columns * cell * rows * cell) as usize];
@@ -53,7 +78,7 @@ fn disk_point(x: u32, y: u32, cell: u32, inside: Vec2) -> Vec2 {
 }
 
 /// The example's normals in the usual colours, enlarged.
-pub fn normals(maps: &BakedNdfMaps) -> Canvas {
+fn normals(maps: &BakedNdfMaps) -> Canvas {
     let (width, height) = (maps.params.width, maps.params.height);
     let zoom = (512 / width.max(height)).clamp(1, 16);
     let mut canvas = Canvas::new(width * zoom, height * zoom, BACKGROUND);
@@ -69,7 +94,7 @@ pub fn normals(maps: &BakedNdfMaps) -> Canvas {
 }
 
 /// Sub-regions of a stochastic surface in the colours of their owners' transforms, with the centres as dots.
-pub fn owners(placement: &BakedPlacement) -> Option<Canvas> {
+fn owners(placement: &BakedPlacement) -> Option<Canvas> {
     let PlacementKind::Stochastic { cells_x, cells_y, .. } = placement.params.kind else { return None };
     let (columns, rows) = (cells_x.min(MAX_CELLS), cells_y.min(MAX_CELLS));
     let region = (384 / columns.max(rows)).clamp(4, 64);

@@ -1,24 +1,11 @@
 //! An environment on the GPU: `bind_environment.wgsl`, or `bind_environment_exact.wgsl`.
 
 use crate::gpu::{Gpu, GpuTexture, ResourceSet, Resources};
-use bytemuck::{Pod, Zeroable};
 use glint_bake_core::environment::Environment;
-use glint_bake_core::environment::quantise::decoded;
+use glint_bake_core::environment::baked::decoded;
 use glint_formats::environment::{EnvironmentParams, Kernel, LevelChoice, MAX_LEVELS, MeasuredError, Storage};
 use half::f16;
 use wgpu::{Features, TextureFormat, TextureViewDimension};
-
-/// `GlintEnvironment`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct EnvironmentUniform {
-    level: [f32; MAX_LEVELS],
-    present: [f32; MAX_LEVELS],
-    levels: u32,
-    mips: u32,
-    coloured: u32,
-    radiance_scale: f32,
-}
 
 /// How shaders look directions up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,6 +104,7 @@ pub fn empty(gpu: &Gpu) -> Resources {
     };
     let one = f16::ONE.to_bits();
     let environment = Environment {
+        uniform: params.uniform(),
         params,
         radiance: vec![0; 6 * 8],
         indicators: Vec::new(),
@@ -131,18 +119,8 @@ pub fn upload_as(gpu: &Gpu, environment: &Environment, look_up: LookUp, features
     let params = &environment.params;
     let radiance = radiance(environment, look_up, features);
     let indicators = indicators(environment, look_up, features);
-    let mut uniform = EnvironmentUniform {
-        level: [0.0; MAX_LEVELS],
-        present: [0.0; MAX_LEVELS],
-        levels: params.levels.len() as u32,
-        mips: params.mips(),
-        coloured: u32::from(params.coloured),
-        radiance_scale: params.radiance_scale as f32 * radiance.scale,
-    };
-    for (i, level) in params.levels.iter().take(MAX_LEVELS).enumerate() {
-        uniform.level[i] = *level as f32;
-        uniform.present[i] = 1.0;
-    }
+    let mut uniform = environment.uniform;
+    uniform.radiance_scale *= radiance.scale;
     let (cube, cubes) = match look_up {
         LookUp::Sampler => (TextureViewDimension::Cube, TextureViewDimension::CubeArray),
         LookUp::Exact => (TextureViewDimension::D2Array, TextureViewDimension::D2Array),

@@ -242,14 +242,15 @@ impl SceneUniform {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glint_shaders::assert_layout;
+    use glint_shaders::assert_same_layout;
 
     #[test]
     fn uniforms_lie_as_the_shader_reads_them() {
-        assert_layout!(
-            ["view_scene"],
+        let source = glint_shaders::compose(&["view_scene"]);
+        assert_same_layout!(
+            &source,
             "ViewScene",
-            SceneUniform:
+            SceneUniform,
             clip_from_world,
             camera,
             frame,
@@ -266,10 +267,10 @@ mod tests {
             half_size,
             world_from_camera
         );
-        assert_layout!(
-            ["view_scene"],
+        assert_same_layout!(
+            &source,
             "ViewMaterial",
-            Material:
+            Material,
             f0,
             intrinsic_roughness,
             alpha,

@@ -1,7 +1,7 @@
 // Bindings of an environment for glint_environment.wgsl: group 2, read texel by texel.
 //
 // What bind_environment.wgsl does by a sampler, in f32: samplers may round weights to 8 bits and differ at the corners of
-// a cube. Twin of glint-bake-core environment/eval.rs, cube_taps; for tests and for devices whose samplers do not serve.
+// a cube. Twin of glint-bake-core environment/lookup.rs; for tests and for devices whose samplers do not serve.
 
 #import environment::eval
 
@@ -13,7 +13,7 @@
 @group(2) @binding(4) var environment_albedo: texture_2d<f32>;
 
 // Column, row, face.
-struct EnvironmentTaps {
+struct EnvironmentCubeTaps {
     a: vec3i,
     b: vec3i,
     c: vec3i,
@@ -22,7 +22,7 @@ struct EnvironmentTaps {
 }
 
 // Face, s, t and what both are a fraction of; X goes before Y before Z where two are as large.
-fn environment_face(v: vec3f) -> vec4f {
+fn environment_face_fraction(v: vec3f) -> vec4f {
     let size = abs(v);
     if size.x >= size.y && size.x >= size.z {
         return select(vec4f(1.0, v.z, -v.y, size.x), vec4f(0.0, -v.z, -v.y, size.x), v.x > 0.0);
@@ -33,7 +33,7 @@ fn environment_face(v: vec3f) -> vec4f {
     return select(vec4f(5.0, -v.x, -v.y, size.z), vec4f(4.0, v.x, -v.y, size.z), v.z > 0.0);
 }
 
-fn environment_face_whole(v: vec3i) -> vec4i {
+fn environment_face_fraction_whole(v: vec3i) -> vec4i {
     let size = abs(v);
     if size.x >= size.y && size.x >= size.z {
         return select(vec4i(1, v.z, -v.y, size.x), vec4i(0, -v.z, -v.y, size.x), v.x > 0);
@@ -60,19 +60,19 @@ fn environment_seamless_texel(face: i32, i: i32, j: i32, size: i32) -> vec3i {
         case 4: { direction = vec3i(s, -t, size); }
         default: {}
     }
-    let next = environment_face_whole(direction);
+    let next = environment_face_fraction_whole(direction);
     let cell = clamp((next.yz + next.w) * size / (2 * next.w), vec2i(0), vec2i(size - 1));
     return vec3i(cell, next.x);
 }
 
-fn environment_taps(direction: vec3f, size: i32) -> EnvironmentTaps {
-    let place = environment_face(direction);
+fn environment_cube_taps(direction: vec3f, size: i32) -> EnvironmentCubeTaps {
+    let place = environment_face_fraction(direction);
     let face = i32(place.x);
     let p = 0.5 * (place.yz / place.w + 1.0) * f32(size) - 0.5;
     let base = floor(p);
     let f = p - base;
     let cell = clamp(vec2i(base), vec2i(-1), vec2i(size - 1));
-    return EnvironmentTaps(
+    return EnvironmentCubeTaps(
         environment_seamless_texel(face, cell.x, cell.y, size),
         environment_seamless_texel(face, cell.x + 1, cell.y, size),
         environment_seamless_texel(face, cell.x, cell.y + 1, size),
@@ -86,7 +86,7 @@ fn environment_mip_size(mip: i32) -> i32 {
 }
 
 fn environment_radiance_mip(direction: vec3f, mip: i32) -> vec4f {
-    let taps = environment_taps(direction, environment_mip_size(mip));
+    let taps = environment_cube_taps(direction, environment_mip_size(mip));
     return taps.weights.x * textureLoad(environment_radiance, taps.a.xy, taps.a.z, mip)
         + taps.weights.y * textureLoad(environment_radiance, taps.b.xy, taps.b.z, mip)
         + taps.weights.z * textureLoad(environment_radiance, taps.c.xy, taps.c.z, mip)
@@ -94,7 +94,7 @@ fn environment_radiance_mip(direction: vec3f, mip: i32) -> vec4f {
 }
 
 fn environment_indicators_mip(layer: i32, direction: vec3f, mip: i32) -> vec4f {
-    let taps = environment_taps(direction, environment_mip_size(mip));
+    let taps = environment_cube_taps(direction, environment_mip_size(mip));
     return taps.weights.x * textureLoad(environment_indicators, taps.a.xy, 6 * layer + taps.a.z, mip)
         + taps.weights.y * textureLoad(environment_indicators, taps.b.xy, 6 * layer + taps.b.z, mip)
         + taps.weights.z * textureLoad(environment_indicators, taps.c.xy, 6 * layer + taps.c.z, mip)
@@ -102,7 +102,7 @@ fn environment_indicators_mip(layer: i32, direction: vec3f, mip: i32) -> vec4f {
 }
 
 fn environment_colour_mip(layer: i32, direction: vec3f, mip: i32) -> vec3f {
-    let taps = environment_taps(direction, environment_mip_size(mip));
+    let taps = environment_cube_taps(direction, environment_mip_size(mip));
     return taps.weights.x * textureLoad(environment_colours, taps.a.xy, 6 * layer + taps.a.z, mip).rgb
         + taps.weights.y * textureLoad(environment_colours, taps.b.xy, 6 * layer + taps.b.z, mip).rgb
         + taps.weights.z * textureLoad(environment_colours, taps.c.xy, 6 * layer + taps.c.z, mip).rgb

@@ -1,24 +1,25 @@
-// Bindings of lobes, and of the surface synthesised from their map if there is one: group 1. One layout for both, for
-// glint_lobes.wgsl, glint_synthesis.wgsl and glint_surface.wgsl.
+// Bindings of lobes, and of the surface synthesised from their map if there is one: group 1. One layout for both.
 
 #import lobes::query
 #import synthesis::paths
 #import bind_loads
 
-struct LobesData {
+struct LobesUniform {
     map: GlintLobesMap,
+    // Zeros where the map is no surface's sample.
     @align(16) synthesis: GlintSynthesis,
     @align(16) levels: array<GlintLobesLevel, 16>,
 }
 
-@group(1) @binding(0) var<uniform> lobes: LobesData;
-// Section LOBE as it is in the pack.
+// Section LOUB.
+@group(1) @binding(0) var<uniform> lobes: LobesUniform;
+// Section LOBE.
 @group(1) @binding(1) var<storage, read> lobes_records: array<vec4u>;
 // Section LONM: each texel and the one below it.
 @group(1) @binding(2) var<storage, read> lobes_normals: array<vec2u>;
-// Section SYPO as it is in the pack: x in the lower half; at least one element.
+// Section SYPO: x in the lower half.
 @group(1) @binding(3) var<storage, read> synthesis_offsets: array<u32>;
-// Section SYSE as it is in the pack; at least one element.
+// Section SYSE.
 @group(1) @binding(4) var<storage, read> synthesis_seams: array<u32>;
 
 fn glint_lobes_level(index: u32) -> GlintLobesLevel {

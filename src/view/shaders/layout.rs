@@ -1,27 +1,52 @@
-//! How WGSL lays a struct out: for tests that hold a struct of Rust, which is copied into a buffer as it is, against it.
+//! Where the members of WGSL structs lie, for hosts that fill buffers.
 
-use crate::compose;
+use naga::TypeInner;
 
-/// Offsets of the members of a struct, in their order, and its size; none where the files have no such struct.
-///
-/// # Panics
-/// If `files` are no valid WGSL: they are constants of this workspace.
-pub fn layout(files: &[&str], name: &str) -> Option<(Vec<(String, usize)>, usize)> {
-    let module = naga::front::wgsl::parse_str(&compose(files)).unwrap_or_else(|error| panic!("{files:?}: {error}"));
-    let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name))?;
-    let naga::TypeInner::Struct { members, span } = &ty.inner else { return None };
-    let offsets = members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset as usize)).collect();
-    Some((offsets, *span as usize))
+/// Members of a struct in their order.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StructLayout {
+    /// Name and offset in bytes of each member.
+    pub members: Vec<(String, u32)>,
+    /// Bytes of the struct, its padding counted.
+    pub size: u32,
 }
 
-/// Asserts that a struct of Rust has the fields, offsets and size of one in WGSL, of files that are a whole program: `assert_layout!(["hash"], "GlintCellState",
-/// CellState: a, b)`. All fields of both are named.
-#[macro_export]
-macro_rules! assert_layout {
-    ($files:expr, $wgsl:literal, $rust:ty: $($field:ident),* $(,)?) => {
-        let (members, size) = $crate::layout::layout(&$files, $wgsl).unwrap_or_else(|| panic!("there is no {}", $wgsl));
-        let offsets = [$((stringify!($field).to_owned(), ::std::mem::offset_of!($rust, $field))),*];
-        assert_eq!(members, offsets, "{}", $wgsl);
-        assert_eq!(size, ::std::mem::size_of::<$rust>(), "{}", $wgsl);
+/// Layout of the struct `name` of a program, given as WGSL.
+///
+/// # Errors
+/// What naga finds wrong with the text, or that it has no such struct.
+pub fn layout(source: &str, name: &str) -> Result<StructLayout, String> {
+    let module = naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
+    let named = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name));
+    let Some((_, naga::Type { inner: TypeInner::Struct { members, span }, .. })) = named else {
+        return Err(format!("the program has no struct {name}"));
     };
+    let members = members.iter().map(|member| (member.name.clone().unwrap_or_default(), member.offset)).collect();
+    Ok(StructLayout { members, size: *span })
+}
+
+/// Fails unless a `#[repr(C)]` struct has the fields of a struct of a WGSL program at the same offsets, and its size:
+/// `assert_same_layout!(source, "GlintLobesMap", MapUniform, width, height)`.
+#[macro_export]
+macro_rules! assert_same_layout {
+    ($source:expr, $wgsl:literal, $rust:ty, $($field:ident),* $(,)?) => {
+        let members = [$((stringify!($field).to_owned(), std::mem::offset_of!($rust, $field) as u32)),*].to_vec();
+        let size = size_of::<$rust>() as u32;
+        assert_eq!($crate::layout::layout($source, $wgsl).unwrap(), $crate::layout::StructLayout { members, size });
+    };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::layout;
+
+    #[test]
+    fn members_lie_where_wgsl_aligns_them() {
+        let found =
+            layout("struct S { a: f32, b: vec3f, c: vec2u } @group(0) @binding(0) var<uniform> s: S;", "S").unwrap();
+        assert_eq!(found.members, [("a".to_owned(), 0), ("b".to_owned(), 16), ("c".to_owned(), 32)]);
+        assert_eq!(found.size, 48);
+        assert!(layout("struct S { a: f32 }", "T").unwrap_err().contains("no struct T"));
+        assert!(layout("struct S {", "S").is_err());
+    }
 }

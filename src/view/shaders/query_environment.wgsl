@@ -1,7 +1,7 @@
 // Answers queries of glints under an environment, one an invocation.
 
 #import environment::eval
-#import environment::cells
+#import environment::query
 
 struct EnvironmentQuery {
     normal: vec3f,
@@ -22,7 +22,7 @@ struct EnvironmentQuery {
 
 struct EnvironmentAnswer {
     smooth_radiance: vec3f,
-    spread: f32,
+    std_factor: f32,
     glints: vec3f,
     facets: f32,
     moments: vec2f,
@@ -52,7 +52,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let surface = GlintSurface(q.normal, q.view, q.alpha, vec3f(q.f0), facets);
     let chances = glint_chances(environment, surface);
     answers[id.x] = EnvironmentAnswer(
-        chances.smooth_radiance, chances.spread, glint_environment_glints(environment, surface, words), facets,
+        chances.smooth_radiance, chances.std_factor, glint_environment_glints(environment, surface, words), facets,
         chances.moments, lod, 0u, chances.p, words,
     );
 }

@@ -3,7 +3,7 @@
 
 #import shade_environment_surface
 #import shade_smooth_brdf
-#import environment::cells
+#import environment::query
 
 // Number of radiance levels of the pack, whether they have colours, and their radiances: what is known when a pipeline is made costs
 // neither loads nor branches, which some devices take both ways. No levels: all are read from the environment.

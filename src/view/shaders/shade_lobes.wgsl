@@ -1,6 +1,6 @@
 // A surface that repeats a normal map, by the map's lobes. material.intrinsic_roughness is the width of a facet's lobe,
 // material.texels_per_unit the map's scale, material.pixel_sigma the pixel's filter. The program
-// takes in glint_lobes_packed.wgsl or glint_lobes_half.wgsl as well, as the pack stores lobes.
+// takes in lobes::packed or lobes::half as well, as the pack stores lobes.
 
 #import shade_normals
 #import bind_lobes
@@ -18,7 +18,7 @@ fn shade_reflect(point: ViewPoint, light: vec3f) -> vec3f {
     let half = glint_half_vector(point.view, light);
     let frame = glint_lobes_frame_in_map(lobes.map, shade_lobes_footprint(point));
     let query = glint_lobes_query(frame, half.xy, material.intrinsic_roughness);
-    return shade_projected(glint_lobes_p_ndf(lobes.map, query, glint_lobes_realtime_settings()), point, light, half);
+    return shade_projected(glint_lobes_p_ndf(lobes.map, query, glint_lobes_realtime()), point, light, half);
 }
 
 // The map's normal at one place of the footprint, with the intrinsic roughness.
@@ -33,6 +33,6 @@ fn shade_reference(point: ViewPoint, light: vec3f, random: vec2f) -> vec3f {
 
 fn shade_lod(point: ViewPoint) -> f32 {
     let frame = glint_lobes_frame_in_map(lobes.map, shade_lobes_footprint(point));
-    let lod = glint_lobes_lod(lobes.map, frame, glint_lobes_realtime_settings());
+    let lod = glint_lobes_lod(lobes.map, frame, glint_lobes_realtime());
     return f32(lod.finer) + lod.fraction;
 }

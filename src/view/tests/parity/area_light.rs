@@ -12,7 +12,7 @@ use glint_bake_core::normal_map::{HORIZON, NormalMap};
 use glint_bake_core::progress::Silent;
 use glint_formats::area_light::{AreaLightUniform, BINDINGS, NormalStorage};
 use glint_formats::{Codec, Wrap};
-use glint_shaders::assert_layout;
+use glint_shaders::assert_same_layout;
 use glint_view::gpu::{Gpu, Resources, answer, bind_sections};
 use rand::{Rng, RngExt};
 use std::f32::consts::{PI, TAU};
@@ -134,10 +134,18 @@ fn upload(gpu: &Gpu, material: &AreaLightMaterial) -> Resources {
 
 #[test]
 fn uniforms_lie_as_the_shader_reads_them() {
-    assert_layout!(
-        ["bind_area_light_sampler"],
+    let source = glint_shaders::compose(&["bind_area_light_sampler"]);
+    assert_same_layout!(
+        &source,
         "GlintAreaLightMaps",
-        AreaLightUniform: size, mips, wrap, anisotropic, unused_0, unused_1, unused_2
+        AreaLightUniform,
+        size,
+        mips,
+        wrap,
+        anisotropic,
+        unused_0,
+        unused_1,
+        unused_2
     );
 }
 

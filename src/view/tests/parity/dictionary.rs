@@ -8,7 +8,7 @@ use glint_bake_core::dictionary::{DictionaryOptions, bake, quality, sections};
 use glint_bake_core::progress::Silent;
 use glint_formats::Codec;
 use glint_formats::dictionary::DictionaryUniform;
-use glint_shaders::assert_layout;
+use glint_shaders::assert_same_layout;
 use glint_view::gpu::answer;
 use glint_view::methods::dictionary::upload_sections;
 use rand::{Rng, RngExt};
@@ -57,10 +57,19 @@ fn material(rng: &mut impl Rng, palette: &[Vec3]) -> DictionaryMaterial {
 
 #[test]
 fn uniforms_lie_as_the_shader_reads_them() {
-    assert_layout!(
-        ["bind_dictionary"],
+    let source = glint_shaders::compose(&["bind_dictionary"]);
+    assert_same_layout!(
+        &source,
         "GlintDictionaryTables",
-        DictionaryUniform: marginals, levels, entries, alpha_dict, domain, inv_spacing, lobe_area, unused
+        DictionaryUniform,
+        marginals,
+        levels,
+        entries,
+        alpha_dict,
+        domain,
+        inv_spacing,
+        lobe_area,
+        unused
     );
 }
 

@@ -7,14 +7,13 @@ use crate::counting::{MAX_FLIPPED, beside};
 use crate::support::{QUERIES, agree, compare, gpu, log_uniform, random, real_file};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
-use glint_bake_core::counting::eval::tree_leaves;
-use glint_bake_core::counting::eval::unit_from_bits;
-use glint_bake_core::environment::cells::{
-    footprint_area, footprint_facets, surface_cells, surface_lod, surface_words,
-};
-use glint_bake_core::environment::glints::{GlintSurface, environment_glints, glint_chances};
+use glint_bake_core::counting::eval::{tree_leaves, unit_from_bits};
+use glint_bake_core::environment::eval::{Surface, chances, environment_glints};
 use glint_bake_core::environment::image::direction as direction_at;
 use glint_bake_core::environment::options::LevelCount;
+use glint_bake_core::environment::query::{
+    footprint_area, footprint_facets, surface_cells, surface_lod, surface_words,
+};
 use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, bake};
 use glint_bake_core::progress::Silent;
 use glint_formats::environment::{MAX_LEVELS, Storage};
@@ -47,7 +46,7 @@ struct Query {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct Answer {
     smooth: [f32; 3],
-    spread: f32,
+    std_factor: f32,
     glints: [f32; 3],
     facets: f32,
     moments: [f32; 2],
@@ -58,8 +57,8 @@ struct Answer {
 }
 
 impl Query {
-    fn surface(&self, facets: f32) -> GlintSurface {
-        GlintSurface { normal: self.normal, view: self.view, alpha: self.alpha, f0: self.f0, facets }
+    fn surface(&self, facets: f32) -> Surface {
+        Surface { normal: self.normal, view: self.view, alpha: self.alpha, f0: self.f0, facets }
     }
 }
 
@@ -76,7 +75,7 @@ fn image(bright: f32) -> EnvironmentImage {
             pixels.push(if lit { [bright, 0.8 * bright, 0.4 * bright] } else { sky });
         }
     }
-    EnvironmentImage::new(2 * HEIGHT, HEIGHT, pixels).unwrap().0
+    EnvironmentImage::new(2 * HEIGHT, HEIGHT, pixels).unwrap()
 }
 
 fn baked(image: &EnvironmentImage, face_size: u32, levels: u32, storage: Storage, coloured: bool) -> Environment {
@@ -101,7 +100,7 @@ fn baked_to(
         max_error: 0.02,
         ..EnvironmentOptions::default()
     };
-    bake(image, 0, &options, &Silent).unwrap()
+    bake(image, &options, &Silent).unwrap()
 }
 
 fn sphere(rng: &mut impl Rng) -> Vec3 {
@@ -153,12 +152,7 @@ struct Pairs {
 }
 
 /// Twin's radiance for these words and, where the shader's is another, for words beside them.
-fn glints_beside(
-    environment: &Environment,
-    surface: &GlintSurface,
-    words: &[f32; MAX_LEVELS],
-    found: [f32; 3],
-) -> bool {
+fn glints_beside(environment: &Environment, surface: &Surface, words: &[f32; MAX_LEVELS], found: [f32; 3]) -> bool {
     let leaves = tree_leaves(environment.params.levels.len().max(2));
     (0..leaves).any(|node| {
         beside(words[node]).into_iter().any(|word| {
@@ -178,11 +172,14 @@ fn hold(environment: &Environment, queries: &[Query], answers: &[Answer], pairs:
         let lod = surface_lod(area);
         let facets = if query.own_words != 0 { footprint_facets(area, query.density) } else { query.facets };
         let surface = query.surface(facets);
-        let chances = glint_chances(environment, &surface);
-        pairs.smooth.extend(answer.smooth.into_iter().zip(chances.smooth));
+        let chances = chances(environment, &surface);
+        pairs.smooth.extend(answer.smooth.into_iter().zip(chances.smooth_radiance));
         pairs.p.extend(answer.p[..levels].iter().copied().zip(chances.p));
-        let variance = |spread: f32, [mean, square]: [f32; 2]| spread * spread * (square / (mean * mean) - 1.0);
-        pairs.variance.push((variance(answer.spread, answer.moments), variance(chances.spread, chances.moments)));
+        let variance =
+            |std_factor: f32, [mean, square]: [f32; 2]| std_factor * std_factor * (square / (mean * mean) - 1.0);
+        pairs
+            .variance
+            .push((variance(answer.std_factor, answer.moments), variance(chances.std_factor, chances.moments)));
         if query.own_words != 0 {
             let words = surface_words(&surface_cells(query.position, lod, query.seed), leaves);
             for i in 0..leaves {
@@ -248,7 +245,7 @@ fn a_real_environment_agrees_too() {
     let pixels = image::open(path).unwrap();
     let pixels = pixels.into_rgb32f();
     let (width, height) = pixels.dimensions();
-    let image = EnvironmentImage::new(width, height, pixels.pixels().map(|pixel| pixel.0).collect()).unwrap().0;
+    let image = EnvironmentImage::new(width, height, pixels.pixels().map(|pixel| pixel.0).collect()).unwrap();
     let environment = baked(&image, 32, 8, Storage::F16, false);
     let rng = &mut random(32);
     let queries: Vec<Query> = (0..QUERIES).map(|_| query(rng)).collect();
@@ -376,11 +373,11 @@ fn hard_cases_stay_finite() {
         }
         queries.push(hard);
     }
-    let black = EnvironmentImage::new(8, 4, vec![[0.0; 3]; 32]).unwrap().0;
+    let black = EnvironmentImage::new(8, 4, vec![[0.0; 3]; 32]).unwrap();
     let sun = {
         let mut pixels = vec![[0.1; 3]; 32 * 64];
         pixels[700] = [1e6; 3];
-        EnvironmentImage::new(64, 32, pixels).unwrap().0
+        EnvironmentImage::new(64, 32, pixels).unwrap()
     };
     for (image, levels) in [(&black, 1), (&black, 4), (&image(30.0), 16), (&sun, 4)] {
         let environment = baked(image, 8, levels, Storage::F16, false);

@@ -1,0 +1,211 @@
+//! Rounds filtered texels to what a texture stores, and chooses the factor between stored and true radiance.
+//!
+//! The paper stores K indicators as half floats or UNorm. Stored separately, rounded numbers do not add up to 1. Here
+//! level 0 is not stored: it is what the others leave of 1, so the partition of unity holds exactly in any format, and
+//! after any filtering. All that is asked of the others is that they do not exceed 1: where rounding makes them, the
+//! largest gives way, by a unit in its last place at a time.
+//!
+//! A half float is off by 1 in 2048 at the worst. A sun is a few texels of 10⁵ times the mean, so their rounding alone
+//! can exceed the error that a sharp mip may have. How much it is depends on where between two powers of two those few
+//! texels fall, so where it matters the factor is chosen for them. The paper stores radiance as it is.
+
+use super::baked::decoded;
+use super::image::{EnvironmentImage, luminance};
+use glint_formats::environment::Storage;
+use half::f16;
+
+/// Largest stored radiance whose neighbours are still finite half floats.
+const MAX_STORED: f64 = 32768.0;
+/// Images whose brightest pixel is below this are scaled up, so that half floats keep their digits.
+const DIM: f64 = 1.0 / 64.0;
+/// Share of the error asked that rounding may take before another factor is looked for. Errors add by squares, so this
+/// adds 3 % to it at most.
+const UNHEARD: f64 = 0.25;
+/// Another factor is taken where it leaves this share of the error of rounding, or less.
+const EARNED: f64 = 0.5;
+/// Factors that are tried between a power of two and the next; all of them are exact in f32.
+const STEPS: u32 = 512;
+/// Texels a mip, its brightest, that factors are tried on. Where more matter, rounding averages out for any factor.
+const TRIED: usize = 512;
+
+/// Bytes of a radiance texel: R, G, B and root mean square luminance, each over `scale`.
+pub fn radiance(texel: [f64; 4], scale: f64, storage: Storage, out: &mut Vec<u8>) {
+    for value in texel {
+        match storage {
+            Storage::F32 => out.extend(((value / scale) as f32).to_le_bytes()),
+            Storage::F16 | Storage::Unorm16 => out.extend(half(value / scale).to_le_bytes()),
+        }
+    }
+}
+
+fn half(value: f64) -> f16 {
+    f16::from_f32((value as f32).min(65504.0))
+}
+
+/// What a GPU reads of a radiance over its scale.
+pub fn stored(value: f64, storage: Storage) -> f64 {
+    match storage {
+        Storage::F32 => f64::from(value as f32),
+        Storage::F16 | Storage::Unorm16 => half(value).to_f64(),
+    }
+}
+
+/// Bits of indicators that add up to at most 1 once decoded. `shares` are not negative.
+pub fn indicators(shares: &[f64], storage: Storage) -> Vec<u32> {
+    let mut bits: Vec<u32> = shares.iter().map(|share| encoded(share.min(1.0), storage)).collect();
+    while bits.iter().map(|bits| decoded(*bits, storage)).sum::<f64>() > 1.0 {
+        let Some(largest) = bits.iter_mut().max_by(|a, b| decoded(**a, storage).total_cmp(&decoded(**b, storage)))
+        else {
+            break;
+        };
+        *largest -= 1; // The bits of positive floats are in order, so this is the next smaller number.
+    }
+    bits
+}
+
+fn encoded(value: f64, storage: Storage) -> u32 {
+    match storage {
+        Storage::F16 => u32::from(f16::from_f32(value as f32).to_bits()),
+        Storage::F32 => (value as f32).to_bits(),
+        Storage::Unorm16 => (value * 65535.0).round() as u32,
+    }
+}
+
+/// A colour as E5B9G9R9 (Vulkan specification, "Conversion to shared exponent"): 9 bits a channel and one exponent.
+pub fn shared_exponent(rgb: [f64; 3]) -> u32 {
+    const BIAS: i32 = 15;
+    const BITS: i32 = 9;
+    let largest_value = 511.0 / 512.0 * 65536.0;
+    let rgb = rgb.map(|value| value.clamp(0.0, largest_value));
+    let largest = rgb.into_iter().fold(0.0, f64::max);
+    let power = if largest > 0.0 { libm::ilogb(largest) } else { -BIAS - 1 };
+    let mut exponent = power.max(-BIAS - 1) + 1 + BIAS;
+    let unit = |exponent: i32| libm::ldexp(1.0, exponent - BIAS - BITS);
+    if (largest / unit(exponent)).round() >= 512.0 {
+        exponent += 1;
+    }
+    let [r, g, b] = rgb.map(|value| (value / unit(exponent)).round() as u32);
+    (exponent as u32) << 27 | b << 18 | g << 9 | r
+}
+
+/// One mip before rounding.
+#[derive(Clone, Copy, Debug)]
+pub struct Mip<'a> {
+    /// Numbers of all texels, R, G and B first.
+    pub texels: &'a [f64],
+    /// Numbers a texel.
+    pub channels: usize,
+    /// Root mean square error over the mean that it may have.
+    pub max_error: f64,
+}
+
+/// Stored radiance times this is radiance: 1, or what brings `image` into the range of half floats, or what makes the
+/// brightest texels of `mips` round well.
+pub fn radiance_scale(image: &EnvironmentImage, mips: &[Mip<'_>], storage: Storage) -> f64 {
+    let brightest = image.pixels.iter().flatten().fold(0.0f32, |a, b| a.max(*b));
+    let brightest = f64::from(brightest);
+    if storage == Storage::F32 || brightest == 0.0 {
+        return 1.0;
+    }
+    let plain = if (DIM..=MAX_STORED).contains(&brightest) {
+        1.0
+    } else {
+        libm::exp2(libm::ceil(libm::log2(brightest / MAX_STORED)))
+    };
+    let mean = luminance(image.mean());
+    let worst = |mips: &[Mip<'_>], scale: f64| {
+        mips.iter().map(|mip| rounding_error(mip, scale, storage) / (mean * mip.max_error)).fold(0.0, f64::max)
+    };
+    if worst(mips, plain) <= UNHEARD {
+        return plain;
+    }
+    let bright: Vec<(Vec<f64>, &Mip<'_>)> = mips.iter().map(|mip| (brightest_of(mip), mip)).collect();
+    // Spread over as many texels as the mip has, so that mips compare as they do whole.
+    let share = |scale: f64| {
+        let of = |(texels, mip): &(Vec<f64>, &Mip<'_>)| {
+            let few = Mip { texels, channels: 3, max_error: mip.max_error };
+            let part = (texels.len() as f64 / 3.0) / (mip.texels.len() / mip.channels) as f64;
+            rounding_error(&few, scale, storage) * part.sqrt() / mip.max_error
+        };
+        bright.iter().map(of).fold(0.0, f64::max)
+    };
+    let scales = (0..STEPS).map(|k| plain * (1.0 + f64::from(k) / f64::from(STEPS)));
+    let best = scales.map(|scale| (scale, share(scale))).min_by(|a, b| a.1.total_cmp(&b.1));
+    best.filter(|best| best.1 <= EARNED * share(plain)).map_or(plain, |best| best.0)
+}
+
+/// R, G and B of the texels that are brightest, in any order.
+fn brightest_of(mip: &Mip<'_>) -> Vec<f64> {
+    let of = |texel: &[f64]| luminance([texel[0], texel[1], texel[2]]);
+    let mut all: Vec<&[f64]> = mip.texels.chunks_exact(mip.channels).collect();
+    if all.len() > TRIED {
+        all.select_nth_unstable_by(TRIED, |a, b| of(b).total_cmp(&of(a)));
+        all.truncate(TRIED);
+    }
+    all.into_iter().flat_map(|texel| texel[..3].iter().copied()).collect()
+}
+
+/// Root mean square error of luminance over a mip's texels that rounding alone makes.
+pub fn rounding_error(mip: &Mip<'_>, scale: f64, storage: Storage) -> f64 {
+    let mut squares = 0.0;
+    for texel in mip.texels.chunks_exact(mip.channels) {
+        let error = [0, 1, 2].map(|c| stored(texel[c] / scale, storage) * scale - texel[c]);
+        squares += luminance(error).powi(2);
+    }
+    let count = mip.texels.len() / mip.channels;
+    (squares / count.max(1) as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::environment::baked::from_shared_exponent;
+
+    #[test]
+    fn stored_indicators_never_exceed_one() {
+        let mut state = 1u64;
+        let mut unit = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / (1u64 << 24) as f64
+        };
+        for storage in [Storage::F16, Storage::F32, Storage::Unorm16] {
+            for count in [1, 3, 7, 15] {
+                for _ in 0..2000 {
+                    let raw: Vec<f64> = (0..count).map(|_| unit().powi(6)).collect();
+                    let whole: f64 = raw.iter().sum();
+                    let shares: Vec<f64> = raw.iter().map(|share| share / whole).collect();
+                    let read: Vec<f64> = indicators(&shares, storage).iter().map(|b| decoded(*b, storage)).collect();
+                    assert!(read.iter().sum::<f64>() <= 1.0, "{storage:?} {read:?}");
+                    let largest = shares.iter().copied().fold(0.0, f64::max);
+                    for (read, share) in read.iter().zip(&shares) {
+                        // Half a step by rounding. The largest also takes what all roundings add up to, in whole steps.
+                        let half = 0.5 * step(*share, storage);
+                        let excess: f64 = shares.iter().map(|share| 0.5 * step(*share, storage)).sum();
+                        let given = if *share == largest { excess + 2.0 * half } else { 0.0 };
+                        assert!((read - share).abs() <= half + given, "{storage:?} {share} {read}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// Distance of neighbouring numbers at `value`, at most.
+    fn step(value: f64, storage: Storage) -> f64 {
+        match storage {
+            Storage::F16 => (value / 1024.0).max(6e-8),
+            Storage::F32 => (value / 8_388_608.0).max(1e-40),
+            Storage::Unorm16 => 1.0 / 65535.0,
+        }
+    }
+
+    #[test]
+    fn shared_exponents_keep_nine_bits() {
+        for rgb in [[1.0, 0.5, 0.25], [4.7, 0.0, 1e-3], [0.0, 0.0, 13.85], [1023.9, 2.0, 511.5], [0.0; 3]] {
+            let read = from_shared_exponent(shared_exponent(rgb)).map(f64::from);
+            let largest = rgb.into_iter().fold(0.0, f64::max);
+            for c in 0..3 {
+                assert!((read[c] - rgb[c]).abs() <= largest / 500.0, "{rgb:?} {read:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! What a pack holds, as data: the one description that text, JSON, reports and summaries are made from.
+
+use super::parameters::ParametersInfo;
+use crate::exit::{Exit, Failure};
+use crate::methods;
+use crate::methods::contents::{Contents, decode_all};
+use glint_formats::provenance::{PROVENANCE, Provenance};
+use glint_formats::{Issue, IssueCode, Limits, OpenError, Pack, SectionEntry, Severity};
+use serde::Serialize;
+use std::path::Path;
+
+/// Where the schema of the JSON lives; its `$id`.
+pub const SCHEMA: &str =
+    "https://raw.githubusercontent.com/glint-bake/glint-bake/main/docs/schema/glint-info.schema.json";
+
+/// What a pack holds and what is wrong with it.
+#[derive(Debug, Serialize)]
+pub struct Report {
+    #[serde(rename = "$schema")]
+    schema: &'static str,
+    /// The file as it was named.
+    pub file: String,
+    /// Why the file could not be read at all.
+    pub error: Option<String>,
+    /// Size of the file.
+    pub bytes: u64,
+    /// Pack version, major and minor.
+    pub version: Option<(u16, u16)>,
+    /// What is wrong.
+    pub issues: Vec<Issue>,
+    /// The section table.
+    pub sections: Vec<SectionEntry>,
+    /// What it holds of each method.
+    #[serde(flatten)]
+    pub contents: Contents,
+    /// Every parameter section, field by field.
+    pub parameters: Vec<ParametersInfo>,
+    /// Where the pack comes from.
+    pub provenance: Vec<Provenance>,
+    #[serde(skip)]
+    pack: Option<Pack>,
+}
+
+impl Report {
+    /// Looks at a file.
+    pub fn of_file(path: &Path, limits: &Limits) -> Report {
+        let bytes = std::fs::metadata(path).map_or(0, |meta| meta.len());
+        match Pack::open(path, limits) {
+            Ok(pack) => Report::of_pack(path, pack),
+            Err(OpenError::Io(error)) => {
+                Report { error: Some(format!("cannot be read: {error}")), ..Report::empty(path, bytes) }
+            }
+            Err(OpenError::Invalid(issues)) => Report { issues, ..Report::empty(path, bytes) },
+        }
+    }
+
+    /// Looks at bytes that `path` will have.
+    pub fn of_bytes(path: &Path, bytes: Vec<u8>) -> Report {
+        let len = bytes.len() as u64;
+        match Pack::from_bytes(bytes, &Limits::default()) {
+            Ok(pack) => Report::of_pack(path, pack),
+            Err(issues) => Report { issues, ..Report::empty(path, len) },
+        }
+    }
+
+    fn empty(path: &Path, bytes: u64) -> Report {
+        Report {
+            schema: SCHEMA,
+            file: path.display().to_string(),
+            error: None,
+            bytes,
+            version: None,
+            issues: Vec::new(),
+            sections: Vec::new(),
+            contents: methods::describe(None),
+            parameters: Vec::new(),
+            provenance: Vec::new(),
+            pack: None,
+        }
+    }
+
+    fn of_pack(path: &Path, pack: Pack) -> Report {
+        let mut report = Report::empty(path, pack.file_len());
+        report.version = Some(pack.version());
+        report.sections = pack.sections().to_vec();
+        // Checksums run faster than a disk reads, so every byte is checked even when only a summary is wanted.
+        report.issues = pack.verify();
+        if !report.is_damaged() {
+            report.contents = methods::describe(Some(&pack));
+            report.parameters = ParametersInfo::all_of(&pack);
+            report.provenance = decode_all(&pack, PROVENANCE).into_iter().map(|(_, provenance)| provenance).collect();
+        }
+        report.pack = Some(pack);
+        report
+    }
+
+    /// The pack, when it could be opened.
+    pub fn pack(&self) -> Option<&Pack> {
+        self.pack.as_ref()
+    }
+
+    /// The pack when it is sound; else its first error as a failure.
+    pub fn sound(&self) -> Result<&Pack, Failure> {
+        let fail = |what: String| Err(Failure::new(self.exit(), format!("{}: {what}", self.file)));
+        if let Some(error) = &self.error {
+            return fail(error.clone());
+        }
+        match (self.issues.iter().find(|issue| issue.severity == Severity::Error), &self.pack) {
+            (Some(issue), _) => fail(issue.to_string()),
+            (None, Some(pack)) => Ok(pack),
+            (None, None) => fail("cannot be opened".into()),
+        }
+    }
+
+    /// Whether an issue keeps the pack from being used.
+    pub fn is_damaged(&self) -> bool {
+        self.issues.iter().any(|issue| issue.severity == Severity::Error)
+    }
+
+    /// The code a program ends with for this pack. Damage counts before what is merely newer or larger than allowed.
+    pub fn exit(&self) -> Exit {
+        if self.error.is_some() {
+            return Exit::InputOutput;
+        }
+        let codes =
+            self.issues.iter().filter(|issue| issue.severity == Severity::Error).map(|issue| exit_of(issue.code));
+        let rank = |exit: &Exit| {
+            [Exit::Success, Exit::LimitExceeded, Exit::Unsupported, Exit::BadInput].iter().position(|e| e == exit)
+        };
+        codes.max_by_key(rank).unwrap_or(Exit::Success)
+    }
+
+    /// As JSON, with a line end.
+    pub fn to_json(&self) -> String {
+        let mut text = serde_json::to_string_pretty(self).expect("reports have string keys only");
+        text.push('\n');
+        text
+    }
+}
+
+/// What an issue means to the caller. Header and table carry a checksum, so an unknown version, codec or flag there is
+/// the mark of a newer writer, not of damage.
+fn exit_of(code: IssueCode) -> Exit {
+    use IssueCode::{
+        FileTooLarge, RawTooLarge, TooManySections, UnknownCodec, UnknownFlags, UnknownRequired, UnknownResource,
+        UnsupportedMajor, UnsupportedSectionVersion,
+    };
+    match code {
+        FileTooLarge | TooManySections | RawTooLarge => Exit::LimitExceeded,
+        UnsupportedMajor
+        | UnknownFlags
+        | UnknownCodec
+        | UnknownResource
+        | UnknownRequired
+        | UnsupportedSectionVersion => Exit::Unsupported,
+        _ => Exit::BadInput,
+    }
+}
