@@ -229,7 +229,7 @@ mod with_viewer {
             measured_texels: 0,
             ..environment::EnvironmentOptions::default()
         };
-        let baked = environment::bake(&image, 0, &options, &Silent)?;
+        let baked = environment::bake(&image, &options, &Silent)?;
         Ok(environment::sections::to_sections(&format!("dancing_hall_K{levels}"), &baked, Codec::None))
     }
 

@@ -7,8 +7,8 @@ use crate::scene::Mesh;
 use glam::Vec3;
 use glint_bake_core::error::BakeError;
 use glint_bake_core::{area_light, dictionary, environment, lobes, ndf_maps, surface, synthesis};
-use glint_formats::Pack;
 use glint_formats::lobes::{BINDINGS, LobesParams};
+use glint_formats::{Pack, Wrap};
 use std::rc::Rc;
 
 /// All that can be shown, and the environment that can light it.
@@ -126,11 +126,12 @@ impl Subjects {
                 self.left_out.push(format!("environment '{name}' is left out: a scene has one, the first"));
                 continue;
             }
-            let baked = environment::sections::from_pack(pack, name).map_err(bad)?;
-            self.environment = Some(Rc::new(methods::environment::upload(gpu, &baked)));
+            let params = environment::sections::params(pack, name).map_err(bad)?;
+            let bindings = glint_formats::environment::BINDINGS;
+            self.environment = Some(Rc::new(bind_pack(gpu, pack, name, bindings, Wrap::Clamp)?));
             let material = Material { alpha: [0.25; 2], ..Material::default() };
             let shown = self.add(Method::Environment, name, &nothing(gpu), material);
-            shown.constants = methods::environment::constants(&baked.params);
+            shown.constants = methods::environment::constants(&params);
         }
         Ok(())
     }
