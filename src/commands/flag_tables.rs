@@ -102,7 +102,12 @@ fn row(arg: &Arg) -> String {
         (short, long) => short.or(long).unwrap_or_else(|| format!("`{value}{}`", if many { "…" } else { "" })),
     };
     let help = arg.get_long_help().or(arg.get_help()).map(ToString::to_string).unwrap_or_default();
-    let (meaning, default) = split_default(&help.split_whitespace().collect::<Vec<_>>().join(" "));
+    // The first paragraph of a help has no full stop.
+    let paragraph = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ").trim_end_matches('.').to_owned();
+    let (first, rest) = help.split_once("\n\n").unwrap_or((&help, ""));
+    let (first, default) = split_default(&paragraph(first));
+    let rest = rest.split("\n\n").map(paragraph).filter(|text| !text.is_empty());
+    let meaning = [first].into_iter().chain(rest).collect::<Vec<_>>().join(". ");
     let default = default.unwrap_or_else(|| {
         let values: Vec<_> = arg.get_default_values().iter().map(|value| value.to_string_lossy()).collect();
         if arg.is_positional() || takes_value(arg) { values.join(",") } else { "off".to_owned() }
@@ -165,6 +170,7 @@ mod tests {
             Arg::new("error").long("max-error").value_name("E").help("Error; fails the bake [default: by --preset]");
         let kind = Arg::new("kind").long("kind").short('k').help("Kind").value_parser(["a", "b"]).default_value("a");
         let loud = Arg::new("loud").long("loud").action(ArgAction::SetTrue).help("Or A|B").help_heading("Run");
+        let loud = loud.long_help("Or A|B\n\nMore of\nit.");
         let common = Arg::new("quiet").long("quiet").action(ArgAction::SetTrue).help("Say less").help_heading(COMMON);
         let bake = Command::new("bake").args([many, error, loud, kind.value_name("KIND")]);
         [Command::new("glint").arg(common).subcommand(bake)]
@@ -172,7 +178,7 @@ mod tests {
 
     const BAKE: &str = "| flag | meaning | default |\n| --- | --- | --- |\n| `MAP…` | Maps | |\n\
         | `--max-error E` | Error; fails the bake | by `--preset` |\n| `-k`, `--kind KIND` | Kind. `a`, `b` | a |\n\n\
-        Run:\n\n| flag | meaning | default |\n| --- | --- | --- |\n| `--loud` | Or A\\|B | off |\n";
+        Run:\n\n| flag | meaning | default |\n| --- | --- | --- |\n| `--loud` | Or A\\|B. More of it | off |\n";
 
     #[test]
     fn a_part_is_written_anew_and_prose_stays() {
