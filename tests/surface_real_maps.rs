@@ -28,7 +28,7 @@ fn seams_are_no_worse_than_the_inside_of_patches() {
         let sample = NormalMap { wrap: Wrap::Clamp, ..load(&data, name, Some((0, 0, 128))) };
         let synthesis = SynthesisOptions { alignment: 16, ..SynthesisOptions::default() };
         let lobes = LobesOptions { footprints: 0, ..LobesOptions::default() };
-        let surface = bake(&sample, &SurfaceOptions { lobes, synthesis }, &Silent).unwrap();
+        let surface = bake(&sample, &SurfaceOptions { lobes: lobes.clone(), synthesis }, &Silent).unwrap();
         assert!(surface.gpu_bytes() < 800_000, "{name}: {}", surface.gpu_bytes());
         let exact = Exact { surface: &surface, sample: &sample, roughness: lobes.roughness, refinement: 1.0 };
         for sigma in [1.0, 2.0, 4.0, 8.0] {

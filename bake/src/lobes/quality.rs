@@ -164,7 +164,7 @@ pub fn footprint_errors(
 /// one is 0.
 pub fn difference(exact: &GridNdf, seen: &Gathered) -> (f64, f64) {
     let grid = &exact.grid;
-    let mut found = vec![0.0f64; exact.values.len()];
+    let mut values = vec![0.0f64; exact.values.len()];
     let mut off_grid = 0.0;
     // A lobe of so small a share is nothing, and a query may hold as many of them as others.
     let least = 1e-7 * seen.lobes.iter().fold(0.0, |most: f32, lobe| most.max(lobe.share));
@@ -186,7 +186,7 @@ pub fn difference(exact: &GridNdf, seen: &Gathered) -> (f64, f64) {
                 }
                 let value = lobe.density(s.as_vec2()) as f64;
                 if (0..grid.width as i64).contains(&i) && (0..grid.height as i64).contains(&j) {
-                    found[j as usize * grid.width + i as usize] += value;
+                    values[j as usize * grid.width + i as usize] += value;
                 } else {
                     off_grid += value;
                 }
@@ -195,8 +195,8 @@ pub fn difference(exact: &GridNdf, seen: &Gathered) -> (f64, f64) {
     }
     let cell = grid.spacing * grid.spacing;
     let whole = exact.values.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-    let integral = (found.iter().sum::<f64>() + off_grid) * cell;
-    (e1(&found, &exact.values) + off_grid / whole, (integral - 1.0).abs())
+    let integral = (values.iter().sum::<f64>() + off_grid) * cell;
+    (e1(&values, &exact.values) + off_grid / whole, (integral - 1.0).abs())
 }
 
 /// Intrinsic roughnesses that [`BakedLobes::rim_roughness`] tries, ascending.
@@ -215,7 +215,10 @@ impl BakedLobes {
         let mut share = share_beyond(parts, width as f64 * height as f64, most);
         let frame = Frame { mean: Vec2::ZERO, axis: Vec2::X, major: f32::INFINITY, minor: f32::INFINITY };
         let alike = query(frame, roughness);
-        for index in (0..self.params.levels.len()).rev().take_while(|_| share <= most) {
+        for index in (0..self.params.levels.len()).rev() {
+            if share > most {
+                break;
+            }
             let level = self.level(index);
             let count = level.cells_x * level.cells_y * self.params.lobes_per_cell;
             let lobes = (level.first_lobe..level.first_lobe + count).map(|index| self.lobe(&level, index));

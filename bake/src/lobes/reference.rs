@@ -240,7 +240,7 @@ pub fn sum_of_boxes(map: &NormalMap, footprint: &Footprint, edge: f64, roughness
     let high = ((footprint.mean + reach - 0.5) / edge).ceil();
     let variance = edge * edge / 12.0;
     let both = DMat2::from_diagonal(DVec2::splat(variance)) + footprint.covariance;
-    let given_footprint =
+    let under_footprint =
         (DMat2::from_diagonal(DVec2::splat(1.0 / variance)) + footprint.covariance.inverse()).inverse();
     let (mut sum, mut share) = (0.0, 0.0);
     for j in low.y as i64..=high.y as i64 {
@@ -254,7 +254,7 @@ pub fn sum_of_boxes(map: &NormalMap, footprint: &Footprint, edge: f64, roughness
             let residual = DMat2::from_cols(twist * twist.x, twist * twist.y) * variance * variance;
             let mean = normal + jacobian * (variance * (both.inverse() * (footprint.mean - centre)));
             let intrinsic = DMat2::from_diagonal(DVec2::splat(roughness * roughness));
-            let covariance = intrinsic + residual + jacobian * given_footprint * jacobian.transpose();
+            let covariance = intrinsic + residual + jacobian * under_footprint * jacobian.transpose();
             sum += weight * gaussian(s - mean, covariance);
             share += weight;
         }
