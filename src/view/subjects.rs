@@ -65,13 +65,13 @@ impl Subjects {
 
     fn add_dictionaries(&mut self, gpu: &Gpu, pack: &Pack, colours: &[Vec3]) -> Result<(), GpuError> {
         for name in dictionary::sections::dictionaries(pack) {
-            let (tables, params) = dictionary::sections::from_pack(pack, name).map_err(bad)?;
+            let params = dictionary::sections::params(pack, name).map_err(bad)?;
             let mut material = Material { alpha: [params.alpha_dict as f32; 2], ..Material::default() };
             if !colours.is_empty() {
                 material.colours = colours.len() as u32;
                 material.mean_colour = (colours.iter().sum::<Vec3>() / colours.len() as f32).to_array();
             }
-            let data = Rc::new(methods::dictionary::upload(gpu, &tables, colours));
+            let data = Rc::new(methods::dictionary::upload(gpu, pack, name, colours)?);
             self.add(Method::Dictionary, name, &data, material);
         }
         Ok(())
@@ -138,14 +138,14 @@ impl Subjects {
 
     fn add_area_lights(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
         for name in area_light::sections::materials(pack) {
-            let baked = area_light::sections::from_pack(pack, name).map_err(bad)?;
+            let params = area_light::sections::params(pack, name).map_err(bad)?;
             let material = Material {
                 alpha: [0.1; 2],
-                texels_per_unit: baked.params.width as f32,
-                lobes: if baked.params.anisotropic { area_light::eval::LOBES } else { 0 },
+                texels_per_unit: params.width as f32,
+                lobes: if params.anisotropic { area_light::eval::LOBES } else { 0 },
                 ..Material::default()
             };
-            let data = Rc::new(methods::area_light::upload(gpu, &baked));
+            let data = Rc::new(bind_pack(gpu, pack, name, glint_formats::area_light::BINDINGS, params.wrap)?);
             self.add(Method::AreaLight, name, &data, material);
             self.add(Method::PlainLtc, name, &data, material);
         }

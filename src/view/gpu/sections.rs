@@ -15,12 +15,7 @@ type Content<'a> = (Resource, Cow<'a, [u8]>);
 /// # Errors
 /// [`GpuError::BadPack`] for a section that is damaged, or larger than the device binds.
 pub fn bind_pack(gpu: &Gpu, pack: &Pack, name: &str, bindings: &[Binding], wrap: Wrap) -> Result<Resources, GpuError> {
-    let content = |kind: FourCc| {
-        let Some(entry) = pack.find(kind, name) else { return Ok(None) };
-        let payload = pack.payload(entry).map_err(|issue| GpuError::BadPack(issue.to_string()))?;
-        Ok(Some((entry.resource, payload)))
-    };
-    bind(gpu, &content, bindings, wrap)
+    Ok(collect_pack(gpu, pack, name, bindings, wrap)?.finish(gpu))
 }
 
 /// Binds sections that are not in a pack yet; one of each kind. See [`bind_pack`].
@@ -28,20 +23,52 @@ pub fn bind_pack(gpu: &Gpu, pack: &Pack, name: &str, bindings: &[Binding], wrap:
 /// # Errors
 /// [`GpuError::BadPack`] for a section that is larger than the device binds.
 pub fn bind_sections(gpu: &Gpu, sections: &[Section], bindings: &[Binding], wrap: Wrap) -> Result<Resources, GpuError> {
+    Ok(collect_sections(gpu, sections, bindings, wrap)?.finish(gpu))
+}
+
+/// What [`bind_pack`] binds, for a host to add bindings of its own after.
+///
+/// # Errors
+/// Those of [`bind_pack`].
+pub fn collect_pack(
+    gpu: &Gpu,
+    pack: &Pack,
+    name: &str,
+    bindings: &[Binding],
+    wrap: Wrap,
+) -> Result<ResourceSet, GpuError> {
+    let content = |kind: FourCc| {
+        let Some(entry) = pack.find(kind, name) else { return Ok(None) };
+        let payload = pack.payload(entry).map_err(|issue| GpuError::BadPack(issue.to_string()))?;
+        Ok(Some((entry.resource, payload)))
+    };
+    collect(gpu, &content, bindings, wrap)
+}
+
+/// What [`bind_sections`] binds, for a host to add bindings of its own after.
+///
+/// # Errors
+/// Those of [`bind_sections`].
+pub fn collect_sections(
+    gpu: &Gpu,
+    sections: &[Section],
+    bindings: &[Binding],
+    wrap: Wrap,
+) -> Result<ResourceSet, GpuError> {
     let content = |kind: FourCc| {
         let section = sections.iter().find(|section| section.kind == kind);
         Ok(section.map(|section| (section.resource, Cow::Borrowed(&section.payload[..]))))
     };
-    bind(gpu, &content, bindings, wrap)
+    collect(gpu, &content, bindings, wrap)
 }
 
-/// The sections that `bindings` name, by `content`, as a bind group.
-fn bind<'a>(
+/// The sections that `bindings` name, by `content`.
+fn collect<'a>(
     gpu: &Gpu,
     content: &dyn Fn(FourCc) -> Result<Option<Content<'a>>, GpuError>,
     bindings: &[Binding],
     wrap: Wrap,
-) -> Result<Resources, GpuError> {
+) -> Result<ResourceSet, GpuError> {
     let mut set = ResourceSet::default();
     for binding in bindings {
         match *binding {
@@ -70,7 +97,7 @@ fn bind<'a>(
             Binding::ClampSampler => set.sampler(gpu, wgpu::AddressMode::ClampToEdge),
         };
     }
-    Ok(set.finish(gpu))
+    Ok(set)
 }
 
 fn sample_type(view: View) -> wgpu::TextureSampleType {

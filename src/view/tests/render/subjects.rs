@@ -32,7 +32,7 @@ fn pack(sections: Vec<Section>) -> Pack {
 
 fn dictionary_pack() -> Pack {
     let options = DictionaryOptions::default();
-    let baked = dictionary::bake(&options).unwrap();
+    let baked = dictionary::bake(&options, &Silent).unwrap();
     pack(dictionary::sections::to_sections("glitter", &baked, quality::measure(&baked), Codec::None))
 }
 
@@ -97,7 +97,7 @@ fn environment_pack() -> Pack {
 
 fn area_light_pack() -> Pack {
     let options = AreaLightOptions { anisotropic: true, ..AreaLightOptions::default() };
-    let baked = area_light::bake(&map(64, 64), &options, 1 << 30, &Silent).unwrap();
+    let baked = area_light::bake(&map(64, 64), &options, &Silent).unwrap();
     pack(area_light::sections::to_sections("waves", &baked, Codec::None))
 }
 
