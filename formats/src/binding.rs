@@ -24,6 +24,8 @@ pub enum Binding {
 pub enum View {
     /// `texture_2d<f32>`, read through a sampler or by loads.
     Float2d,
+    /// `texture_2d_array<f32>`, read through a sampler or by loads.
+    Float2dArray,
     /// `texture_2d<u32>`, read by loads.
     Uint2d,
     /// `texture_cube<f32>`, read through a sampler.

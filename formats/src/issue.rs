@@ -113,6 +113,8 @@ issue_codes! {
     SynthesisOffset = 3062, "synthesis patch outside sample";
     SynthesisSeam = 3063, "synthesis seam path broken";
     SurfaceMismatch = 3064, "lobes and synthesis of a surface do not fit";
+    NdfUniform = 3070, "NDF map uniform differs from parameters";
+    LayerUniform = 3071, "layered material uniform differs from parameters";
 }
 
 impl fmt::Display for IssueCode {

@@ -15,12 +15,30 @@ type Content<'a> = (Resource, Cow<'a, [u8]>);
 /// # Errors
 /// [`GpuError::BadPack`] for a section that is damaged, or larger than the device binds.
 pub fn bind_pack(gpu: &Gpu, pack: &Pack, name: &str, bindings: &[Binding], wrap: Wrap) -> Result<Resources, GpuError> {
-    let content = |kind: FourCc| {
-        let Some(entry) = pack.find(kind, name) else { return Ok(None) };
-        let payload = pack.payload(entry).map_err(|issue| GpuError::BadPack(issue.to_string()))?;
-        Ok(Some((entry.resource, payload)))
-    };
-    bind(gpu, &content, bindings, wrap)
+    bind_parts(gpu, pack, &[(Some(name), bindings)], wrap)
+}
+
+/// Binds sections of several materials of a pack one after the other in a group; those of no name as if they were missing. `wrap` is
+/// how maps go on beyond their edges.
+///
+/// # Errors
+/// [`GpuError::BadPack`] for a section that is damaged, or larger than the device binds.
+pub fn bind_parts(
+    gpu: &Gpu,
+    pack: &Pack,
+    parts: &[(Option<&str>, &[Binding])],
+    wrap: Wrap,
+) -> Result<Resources, GpuError> {
+    let mut set = ResourceSet::default();
+    for (name, bindings) in parts {
+        let content = |kind: FourCc| {
+            let Some(entry) = name.and_then(|name| pack.find(kind, name)) else { return Ok(None) };
+            let payload = pack.payload(entry).map_err(|issue| GpuError::BadPack(issue.to_string()))?;
+            Ok(Some((entry.resource, payload)))
+        };
+        bind(gpu, &mut set, &content, bindings, wrap)?;
+    }
+    Ok(set.finish(gpu))
 }
 
 /// Binds sections that are not in a pack yet; one of each kind. See [`bind_pack`].
@@ -32,17 +50,19 @@ pub fn bind_sections(gpu: &Gpu, sections: &[Section], bindings: &[Binding], wrap
         let section = sections.iter().find(|section| section.kind == kind);
         Ok(section.map(|section| (section.resource, Cow::Borrowed(&section.payload[..]))))
     };
-    bind(gpu, &content, bindings, wrap)
+    let mut set = ResourceSet::default();
+    bind(gpu, &mut set, &content, bindings, wrap)?;
+    Ok(set.finish(gpu))
 }
 
-/// The sections that `bindings` name, by `content`, as a bind group.
+/// Adds the sections that `bindings` name, by `content`, to a bind group.
 fn bind<'a>(
     gpu: &Gpu,
+    set: &mut ResourceSet,
     content: &dyn Fn(FourCc) -> Result<Option<Content<'a>>, GpuError>,
     bindings: &[Binding],
     wrap: Wrap,
-) -> Result<Resources, GpuError> {
-    let mut set = ResourceSet::default();
+) -> Result<(), GpuError> {
     for binding in bindings {
         match *binding {
             Binding::Uniform(kind) => match content(kind)? {
@@ -70,19 +90,22 @@ fn bind<'a>(
             Binding::ClampSampler => set.sampler(gpu, wgpu::AddressMode::ClampToEdge),
         };
     }
-    Ok(set.finish(gpu))
+    Ok(())
 }
 
 fn sample_type(view: View) -> wgpu::TextureSampleType {
     match view {
         View::Uint2d => wgpu::TextureSampleType::Uint,
-        View::Float2d | View::FloatCube | View::FloatCubeArray => wgpu::TextureSampleType::Float { filterable: true },
+        View::Float2d | View::Float2dArray | View::FloatCube | View::FloatCubeArray => {
+            wgpu::TextureSampleType::Float { filterable: true }
+        }
     }
 }
 
 fn dimension(view: View) -> TextureViewDimension {
     match view {
         View::Float2d | View::Uint2d => TextureViewDimension::D2,
+        View::Float2dArray => TextureViewDimension::D2Array,
         View::FloatCube => TextureViewDimension::Cube,
         View::FloatCubeArray => TextureViewDimension::CubeArray,
     }
@@ -92,7 +115,7 @@ fn dimension(view: View) -> TextureViewDimension {
 fn absent(view: View) -> (GpuTexture, Vec<u8>) {
     let (format, bytes, layers) = match view {
         View::Uint2d => (TextureFormat::R32Uint, 4, 1),
-        View::Float2d => (TextureFormat::Rgba8Unorm, 4, 1),
+        View::Float2d | View::Float2dArray => (TextureFormat::Rgba8Unorm, 4, 1),
         View::FloatCube | View::FloatCubeArray => (TextureFormat::Rgba8Unorm, 4, 6),
     };
     let texture = GpuTexture { format, size: [1; 2], layers, mips: 1, dimension: dimension(view) };
