@@ -118,6 +118,8 @@ issue_codes! {
     SynthesisSeam = 3063, "synthesis seam path broken";
     SurfaceMismatch = 3064, "lobes and synthesis of a surface do not fit";
     SynthesisPadding = 3065, "synthesis buffer does not end with zeros";
+    NdfUniform = 3070, "NDF map uniform differs from parameters";
+    LayerUniform = 3071, "layered material uniform differs from parameters";
 }
 
 impl fmt::Display for IssueCode {

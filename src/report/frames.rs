@@ -49,8 +49,6 @@ mod with_viewer {
     const SKY: &str = "hdri/dancing_hall_1k.hdr";
     /// Edge of the part of a large map that becomes lobes.
     const PART: u32 = 256;
-    /// Most bytes of a map and its mips.
-    const MAX_MEMORY: u64 = 4 << 30;
 
     /// Makes the sections of one pack.
     type Bake = fn(&Settings) -> Result<Vec<Section>, Failure>;
@@ -188,7 +186,7 @@ mod with_viewer {
     }
 
     fn bake_dictionary(_: &Settings) -> Result<Vec<Section>, Failure> {
-        let baked = dictionary::bake(&Default::default())?;
+        let baked = dictionary::bake(&Default::default(), &Silent)?;
         let quality = dictionary::quality::measure(&baked);
         Ok(dictionary::sections::to_sections("dictionary", &baked, quality, Codec::None))
     }
@@ -234,7 +232,7 @@ mod with_viewer {
     fn bake_area_light(settings: &Settings, file: &str, anisotropic: bool) -> Result<Vec<Section>, Failure> {
         let map = settings.normal_map(file, settings.pick(None, Some(PART)))?;
         let options = area_light::AreaLightOptions { anisotropic, ..Default::default() };
-        let baked = area_light::bake(&map, &options, MAX_MEMORY, &Silent)?;
+        let baked = area_light::bake(&map, &options, &Silent)?;
         Ok(area_light::sections::to_sections(stem(file), &baked, Codec::None))
     }
 

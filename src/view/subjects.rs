@@ -8,6 +8,7 @@ use glam::Vec3;
 use glint_bake_core::error::BakeError;
 use glint_bake_core::{area_light, dictionary, environment, lobes, ndf_maps, surface, synthesis};
 use glint_formats::lobes::{BINDINGS, LobesParams};
+use glint_formats::ndf_maps::MaterialUniform;
 use glint_formats::{Pack, Wrap};
 use std::rc::Rc;
 
@@ -79,19 +80,20 @@ impl Subjects {
 
     /// Layered materials first, then each of its own.
     fn add_ndf_maps(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
-        let read = |name: &str| ndf_maps::sections::from_pack(pack, name).map_err(bad);
-        for layered in ndf_maps::sections::layered(pack).map_err(bad)? {
+        let read = |name: &str| ndf_maps::sections::uniform(pack, name).map_err(bad);
+        for (name, layered) in ndf_maps::sections::layered(pack).map_err(bad)? {
             let (base, coat) = (read(&layered.base)?, read(&layered.coat)?);
-            let data = Rc::new(methods::ndf_maps::upload(gpu, &base, Some((&coat, layered.coat_f0)))?);
+            let data = methods::ndf_maps::bind(gpu, pack, &layered.base, Some((&layered.coat, name)))?;
             let material = Material { f0: layered.base_f0, ..ndf_material(&base) };
-            let shown = self.add(Method::NdfMaps, &format!("{}+{}", layered.coat, layered.base), &data, material);
+            let title = format!("{}+{}", layered.coat, layered.base);
+            let shown = self.add(Method::NdfMaps, &title, &Rc::new(data), material);
             shown.constants = methods::ndf_maps::constants(&base, Some(&coat));
         }
         for name in ndf_maps::sections::materials(pack) {
-            let baked = read(name)?;
-            let data = Rc::new(methods::ndf_maps::upload(gpu, &baked, None)?);
-            let shown = self.add(Method::NdfMaps, name, &data, ndf_material(&baked));
-            shown.constants = methods::ndf_maps::constants(&baked, None);
+            let uniform = read(name)?;
+            let data = Rc::new(methods::ndf_maps::bind(gpu, pack, name, None)?);
+            let shown = self.add(Method::NdfMaps, name, &data, ndf_material(&uniform));
+            shown.constants = methods::ndf_maps::constants(&uniform, None);
         }
         Ok(())
     }
@@ -159,12 +161,11 @@ fn nothing(gpu: &Gpu) -> Rc<Resources> {
 }
 
 /// A tiny example repeats some times over the surface.
-fn ndf_material(baked: &ndf_maps::baked::Material) -> Material {
+fn ndf_material(uniform: &MaterialUniform) -> Material {
     const EXAMPLES: f32 = 16.0;
-    let params = &baked.maps.params;
     Material {
-        intrinsic_roughness: params.intrinsic_roughness,
-        texels_per_unit: EXAMPLES * params.width.max(params.height) as f32,
+        intrinsic_roughness: uniform.intrinsic_roughness,
+        texels_per_unit: EXAMPLES * uniform.size[0].max(uniform.size[1]) as f32,
         ..Material::default()
     }
 }

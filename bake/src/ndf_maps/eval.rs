@@ -186,7 +186,7 @@ impl BakedNdfMaps {
         let bilinear = self.params.storage == DensityStorage::PaperF32;
         let [across, down] = [p.x, p.y].map(|p| if bilinear { tent(p) } else { spline(p) });
         let inside = [0, 1, 2].map(|a| (0..size[0]).contains(&(across.first + a)));
-        let start = record.texel_offset as i32 + down.first * size[0] + across.first;
+        let start = record.first as i32 + down.first * size[0] + across.first;
         let mut sum = 0.0;
         for b in 0..3 {
             if (0..size[1]).contains(&(down.first + b)) {

@@ -63,17 +63,13 @@ struct Owner {
 impl Material {
     /// Owner of a sub-region, by its index from the base cell's first one on.
     fn owner_of(&self, cells: Cells, region: IVec2) -> Owner {
-        let index = |cell: IVec2| {
-            let at = cells.base + cell;
-            (at.y.rem_euclid(cells.count) * cells.count + at.x.rem_euclid(cells.count)) as usize
-        };
-        let (cell, quadrant) = (region >> 1, region & 1);
-        let own = self.placement.noise[index(cell)];
-        let neighbour = own.class_and_owners >> (16 + 4 * (quadrant.x + 2 * quadrant.y)) & 0xf;
-        let cell = cell + IVec2::new((neighbour % 3) as i32 - 1, (neighbour / 3) as i32 - 1);
-        let owner = self.placement.noise[index(cell)];
+        let regions = 2 * cells.count;
+        let at = 2 * cells.base + region;
+        let owner = self.placement.noise[(at.y.rem_euclid(regions) * regions + at.x.rem_euclid(regions)) as usize];
+        let [x, y] = owner.neighbour();
+        let cell: IVec2 = (region >> 1i32) + IVec2::new(x, y);
         Owner {
-            class: owner.class_and_owners & 0xff,
+            class: owner.class(),
             centre: (cell.as_vec2() + unorm_pair(owner.centre)) * cells.edge,
             offset: unorm_pair(owner.offset) * self.size(),
         }
@@ -202,7 +198,7 @@ impl Material {
     }
 
     /// Example texels a surface texel, by area, under the transform that has most.
-    pub fn most_texels(&self) -> f32 {
+    pub(super) fn most_texels(&self) -> f32 {
         let palette = 0..self.placement.palette.len() as u32;
         palette.map(|class| self.position_to_local(class).determinant().abs().sqrt()).fold(0.0, f32::max)
     }

@@ -62,9 +62,6 @@ pub struct Resources {
     pub sections: Vec<(FourCc, BoundSection)>,
 }
 
-/// Elements in a row of [`ResourceSet::table`]; `bind_table_place` of bind_table.wgsl has the same.
-pub const TABLE_WIDTH: u32 = 1024;
-
 const STAGES: wgpu::ShaderStages = wgpu::ShaderStages::FRAGMENT.union(wgpu::ShaderStages::COMPUTE);
 
 impl ResourceSet {
@@ -140,24 +137,6 @@ impl ResourceSet {
             Resource::Texture(view),
         );
         self
-    }
-
-    /// Adds a table as a texture of [`TABLE_WIDTH`] columns, element i at column i mod `TABLE_WIDTH` of row i / `TABLE_WIDTH`:
-    /// elements of four bytes as `R32Uint`, of sixteen as `Rgba32Uint`.
-    ///
-    /// Whether an adapter in software reads this or a storage buffer faster depends on the program: to be measured.
-    pub fn table(&mut self, gpu: &Gpu, format: wgpu::TextureFormat, contents: &[u8]) -> &mut Self {
-        let row = TABLE_WIDTH as usize * format.block_copy_size(None).unwrap_or(4) as usize;
-        let mut padded = contents.to_vec();
-        padded.resize(contents.len().next_multiple_of(row).max(row), 0);
-        let shape = GpuTexture {
-            format,
-            size: [TABLE_WIDTH, (padded.len() / row) as u32],
-            layers: 1,
-            mips: 1,
-            dimension: wgpu::TextureViewDimension::D2,
-        };
-        self.texture_of(gpu, shape, wgpu::TextureSampleType::Uint, &padded)
     }
 
     /// Adds a sampler that filters between texels and mips; it repeats or clamps.
