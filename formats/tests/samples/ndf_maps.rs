@@ -149,8 +149,5 @@ pub fn layered() -> LayeredMaterial {
 /// The sections of a two-layer material.
 pub fn layer_sections(layers: &LayeredMaterial) -> Vec<Section> {
     let name = "coated rock";
-    vec![
-        Section::parameters(LAYERS, name, layers),
-        Section::buffer(LAYERS_UNIFORM, name, &[LayersUniform::of(layers)]),
-    ]
+    vec![Section::parameters(LAYERS, name, layers), Section::buffer(LAYERS_UNIFORM, name, &[LayersUniform::of(layers)])]
 }
