@@ -103,7 +103,7 @@ impl Material {
             Detail::Tiles(_) if settings.probes > 0 => self.boxes(&view, LOBE_TEXELS, gathered),
             Detail::Tiles(level) if self.is_top(level) && footprint.minor >= WHOLE_REGION_SIGMA * edge => {
                 let weight = edge * edge * footprint.widened_gaussian(edge, middle);
-                gathered.add_tile(TileTerm { tile: self.top_tile(), class: owner.class, weight });
+                gathered.add(TileTerm { tile: self.top_tile(), class: owner.class, weight });
             }
             Detail::Tiles(level) => self.tiles(&view, settings, level, gathered),
             Detail::Boxes(edge) => self.boxes(&view, edge, gathered),
@@ -165,7 +165,7 @@ impl Material {
         }
         for (class, weight) in shares.into_iter().enumerate() {
             if weight > 0.0 {
-                gathered.add_tile(TileTerm { tile: self.top_tile(), class: class as u32, weight });
+                gathered.add(TileTerm { tile: self.top_tile(), class: class as u32, weight });
             }
         }
     }
@@ -192,7 +192,7 @@ impl Material {
                 let local = x - (x / self.size()).floor() * self.size();
                 let index = (local / level.tile_texels as f32).as_uvec2().min(last);
                 let tile = level.first_tile + index.y * level.tiles_x + index.x;
-                gathered.add_tile(TileTerm { tile, class, weight });
+                gathered.add(TileTerm { tile, class, weight });
             }
         }
     }
