@@ -7,7 +7,7 @@
 //! `cargo run --release … --bin X --` runs the X that was built for the tests. What cannot run is in [`NOT_RUN`], with a reason.
 //! A command whose comment begins with `code N` ends with that exit code.
 
-use crate::examples::can_view;
+use crate::examples::{can_view, inputs};
 use crate::projects::program;
 use crate::support::root;
 use std::fs;
@@ -135,9 +135,9 @@ fn normalised(line: &str) -> String {
     out.join(" ")
 }
 
-/// A folder with the files of the repository that pages name.
-fn folder() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
+/// A folder with the files of the repository that pages name; for the page of flags also with what the examples of helps name.
+fn folder(page: &Path) -> tempfile::TempDir {
+    let folder = if page == Path::new("docs/CLI.md") { inputs() } else { tempfile::tempdir().unwrap() };
     for part in ["fixtures/maps", "docs/examples"] {
         fs::create_dir_all(folder.path().join(part)).unwrap();
         for entry in fs::read_dir(root().join(part)).unwrap() {
@@ -155,8 +155,8 @@ struct Shell {
 }
 
 impl Shell {
-    fn new() -> Shell {
-        let root = folder();
+    fn new(page: &Path) -> Shell {
+        let root = folder(page);
         let here = root.path().to_owned();
         Shell { root, here }
     }
@@ -185,11 +185,14 @@ impl Shell {
 /// Runs a page; what is wrong with it, and the page as it should be.
 fn run(path: &Path) -> (Vec<String>, String) {
     let page = fs::read_to_string(root().join(path)).unwrap();
+    if examples(&page).is_empty() {
+        return (Vec::new(), page);
+    }
     let lines: Vec<&str> = page.lines().collect();
     let mut wrong = Vec::new();
     let mut blessed = String::new();
     let mut copied = 0;
-    let mut shell = Shell::new();
+    let mut shell = Shell::new(path);
     for example in examples(&page) {
         if NOT_RUN.iter().any(|(command, _)| *command == example.command) {
             continue;

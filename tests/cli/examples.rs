@@ -49,9 +49,8 @@ pub fn can_view() -> bool {
     false
 }
 
-/// What the examples name is laid out under those names.
-#[test]
-fn every_help_has_examples_and_every_example_runs() {
+/// A folder in which everything that the examples name is laid out under those names.
+pub fn inputs() -> tempfile::TempDir {
     let (inputs, _) = packs();
     for (from, to) in [("layered", "paint"), ("sky", "old"), ("sky", "new")] {
         let path = |name: &str| inputs.path().join(format!("{name}.glintpack"));
@@ -59,6 +58,12 @@ fn every_help_has_examples_and_every_example_runs() {
     }
     fs::write(inputs.path().join("glint.toml"), PROJECT).unwrap();
     fs::write(inputs.path().join("scene.toml"), SCENE).unwrap();
+    inputs
+}
+
+#[test]
+fn every_help_has_examples_and_every_example_runs() {
+    let inputs = inputs();
     let mut seen = 0;
     for (name, command) in commands() {
         let examples = examples(&command);

@@ -57,7 +57,7 @@ pub fn full_pack() -> Vec<u8> {
     let mut sections = vec![provenance_section()];
     sections.extend(placed(&noise_texels()));
     sections.extend(layer_sections(&layered()));
-    sections.extend(dictionary_sections(&dictionary_params(), &dictionary_table()));
+    sections.extend(good_dictionary());
     sections.extend(environment_sections(&environment_params(), &environment_indicators(), 0x3c00));
     sections.extend(good_area_light());
     sections.extend(good_lobes());

@@ -4,7 +4,8 @@ use super::args::{Args, Storage};
 use super::bake::draft;
 use crate::cli::values::name_of;
 use crate::exit::{Exit, Failure};
-use crate::methods::planning::{Candidates, Request, sizes};
+use crate::methods::bake::Candidates;
+use crate::methods::planning::{Request, sizes};
 use crate::quantities::kib;
 use crate::scene::Footprints;
 use glam::DVec2;
@@ -74,7 +75,7 @@ pub fn candidates(args: &Args, request: &Request<'_>) -> Result<Candidates, Fail
     drop(made);
     let mut found = Candidates::new(line(&footprints));
     // A preset says both, so that there is nothing to choose but the tiles.
-    let preset = request.gives("preset");
+    let preset = request.fixes("preset");
     let settings = if preset { &SETTINGS[..1] } else { &SETTINGS[..] };
     for setting in settings {
         let choice = asked(*setting, tile, !preset);

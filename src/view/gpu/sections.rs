@@ -15,30 +15,7 @@ type Content<'a> = (Resource, Cow<'a, [u8]>);
 /// # Errors
 /// [`GpuError::BadPack`] for a section that is damaged, or larger than the device binds.
 pub fn bind_pack(gpu: &Gpu, pack: &Pack, name: &str, bindings: &[Binding], wrap: Wrap) -> Result<Resources, GpuError> {
-    bind_parts(gpu, pack, &[(Some(name), bindings)], wrap)
-}
-
-/// Binds sections of several materials of a pack one after the other in a group; those of no name as if they were missing. `wrap` is
-/// how maps go on beyond their edges.
-///
-/// # Errors
-/// [`GpuError::BadPack`] for a section that is damaged, or larger than the device binds.
-pub fn bind_parts(
-    gpu: &Gpu,
-    pack: &Pack,
-    parts: &[(Option<&str>, &[Binding])],
-    wrap: Wrap,
-) -> Result<Resources, GpuError> {
-    let mut set = ResourceSet::default();
-    for (name, bindings) in parts {
-        let content = |kind: FourCc| {
-            let Some(entry) = name.and_then(|name| pack.find(kind, name)) else { return Ok(None) };
-            let payload = pack.payload(entry).map_err(|issue| GpuError::BadPack(issue.to_string()))?;
-            Ok(Some((entry.resource, payload)))
-        };
-        bind(gpu, &mut set, &content, bindings, wrap)?;
-    }
-    Ok(set.finish(gpu))
+    Ok(collect_pack(gpu, pack, name, bindings, wrap)?.finish(gpu))
 }
 
 /// Binds sections that are not in a pack yet; one of each kind. See [`bind_pack`].
@@ -46,17 +23,76 @@ pub fn bind_parts(
 /// # Errors
 /// [`GpuError::BadPack`] for a section that is larger than the device binds.
 pub fn bind_sections(gpu: &Gpu, sections: &[Section], bindings: &[Binding], wrap: Wrap) -> Result<Resources, GpuError> {
+    Ok(collect_sections(gpu, sections, bindings, wrap)?.finish(gpu))
+}
+
+/// What [`bind_pack`] binds, for a host to add bindings of its own after.
+///
+/// # Errors
+/// Those of [`bind_pack`].
+pub fn collect_pack(
+    gpu: &Gpu,
+    pack: &Pack,
+    name: &str,
+    bindings: &[Binding],
+    wrap: Wrap,
+) -> Result<ResourceSet, GpuError> {
+    collect_parts(gpu, pack, &[(Some(name), bindings)], wrap)
+}
+
+/// Binds sections of several materials of a pack one after the other in a group; those of no name as if they were missing. `wrap` is
+/// how maps go on beyond their edges.
+///
+/// # Errors
+/// Those of [`bind_pack`].
+pub fn bind_parts(
+    gpu: &Gpu,
+    pack: &Pack,
+    parts: &[(Option<&str>, &[Binding])],
+    wrap: Wrap,
+) -> Result<Resources, GpuError> {
+    Ok(collect_parts(gpu, pack, parts, wrap)?.finish(gpu))
+}
+
+fn collect_parts(
+    gpu: &Gpu,
+    pack: &Pack,
+    parts: &[(Option<&str>, &[Binding])],
+    wrap: Wrap,
+) -> Result<ResourceSet, GpuError> {
+    let mut set = ResourceSet::default();
+    for (name, bindings) in parts {
+        let content = |kind: FourCc| {
+            let Some(entry) = name.and_then(|name| pack.find(kind, name)) else { return Ok(None) };
+            let payload = pack.payload(entry).map_err(|issue| GpuError::BadPack(issue.to_string()))?;
+            Ok(Some((entry.resource, payload)))
+        };
+        collect(gpu, &mut set, &content, bindings, wrap)?;
+    }
+    Ok(set)
+}
+
+/// What [`bind_sections`] binds, for a host to add bindings of its own after.
+///
+/// # Errors
+/// Those of [`bind_sections`].
+pub fn collect_sections(
+    gpu: &Gpu,
+    sections: &[Section],
+    bindings: &[Binding],
+    wrap: Wrap,
+) -> Result<ResourceSet, GpuError> {
     let content = |kind: FourCc| {
         let section = sections.iter().find(|section| section.kind == kind);
         Ok(section.map(|section| (section.resource, Cow::Borrowed(&section.payload[..]))))
     };
     let mut set = ResourceSet::default();
-    bind(gpu, &mut set, &content, bindings, wrap)?;
-    Ok(set.finish(gpu))
+    collect(gpu, &mut set, &content, bindings, wrap)?;
+    Ok(set)
 }
 
-/// Adds the sections that `bindings` name, by `content`, to a bind group.
-fn bind<'a>(
+/// Adds the sections that `bindings` name, by `content`.
+fn collect<'a>(
     gpu: &Gpu,
     set: &mut ResourceSet,
     content: &dyn Fn(FourCc) -> Result<Option<Content<'a>>, GpuError>,
@@ -115,8 +151,8 @@ fn dimension(view: View) -> TextureViewDimension {
 fn absent(view: View) -> (GpuTexture, Vec<u8>) {
     let (format, bytes, layers) = match view {
         View::Uint2d => (TextureFormat::R32Uint, 4, 1),
-        View::Float2d | View::Float2dArray => (TextureFormat::Rgba8Unorm, 4, 1),
-        View::FloatCube | View::FloatCubeArray => (TextureFormat::Rgba8Unorm, 4, 6),
+        View::Float2d => (TextureFormat::Rgba8Unorm, 4, 1),
+        View::Float2dArray | View::FloatCube | View::FloatCubeArray => (TextureFormat::Rgba8Unorm, 4, 6),
     };
     let texture = GpuTexture { format, size: [1; 2], layers, mips: 1, dimension: dimension(view) };
     (texture, vec![0; bytes * layers as usize])

@@ -13,8 +13,9 @@ use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
 use glint_bake_core::ndf_maps::sections::{from_pack, layer_sections, to_sections};
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
-use glint_formats::ndf_maps::{DensityStorage, LayeredMaterial};
+use glint_formats::ndf_maps::{DensityStorage, LayeredMaterial, MaterialUniform, RECORDS};
 use glint_formats::{Codec, Limits, Pack, PackBuilder, Wrap};
+use glint_shaders::assert_same_layout;
 use glint_view::gpu::{Gpu, answer};
 use glint_view::methods::ndf_maps::bind;
 use rand::{Rng, RngExt};
@@ -406,4 +407,30 @@ fn what_is_bound_is_what_the_pack_holds() {
         // Two parameter sections a material, one of the layers.
         assert_eq!(held, bound("base") + bound("coat") + bound("both") - 5);
     }
+}
+
+#[test]
+fn the_uniform_lies_as_the_shader_reads_it() {
+    let source = glint_shaders::compose(&["query_ndf_maps"]);
+    assert_same_layout!(
+        &source,
+        "GlintNdfMaterial",
+        MaterialUniform,
+        size,
+        wrap,
+        storage,
+        intrinsic_roughness,
+        levels,
+        palette,
+        cells,
+        cell_texels,
+        palette_records,
+        reach_records,
+        tile_records,
+        blocks,
+        few_tiles,
+        most_texels,
+        layer
+    );
+    assert!(source.contains(&format!("array<vec4u, {RECORDS}>")));
 }

@@ -32,7 +32,7 @@ fn pack(sections: Vec<Section>) -> Pack {
 
 fn dictionary_pack() -> Pack {
     let options = DictionaryOptions::default();
-    let baked = dictionary::bake(&options).unwrap();
+    let baked = dictionary::bake(&options, &Silent).unwrap();
     pack(dictionary::sections::to_sections("glitter", &baked, quality::measure(&baked), Codec::None))
 }
 
@@ -66,13 +66,14 @@ fn lobes_pack() -> Pack {
 }
 
 fn surface_pack() -> Pack {
-    let options = SynthesisOptions {
+    let synthesis = SynthesisOptions {
         target: Target::Patches { width: 256, height: 256 },
         patch: 32,
         overlap: 4,
         ..Default::default()
     };
-    let baked = surface::bake(&map(112, 128), &LobesOptions::default(), &options, &Silent).unwrap();
+    let options = surface::SurfaceOptions { lobes: LobesOptions::default(), synthesis };
+    let baked = surface::bake(&map(112, 128), &options, &Silent).unwrap();
     pack(surface::sections::to_sections("patches", &baked, Codec::None))
 }
 
@@ -96,7 +97,7 @@ fn environment_pack() -> Pack {
 
 fn area_light_pack() -> Pack {
     let options = AreaLightOptions { anisotropic: true, ..AreaLightOptions::default() };
-    let baked = area_light::bake(&map(64, 64), &options, 1 << 30, &Silent).unwrap();
+    let baked = area_light::bake(&map(64, 64), &options, &Silent).unwrap();
     pack(area_light::sections::to_sections("waves", &baked, Codec::None))
 }
 
