@@ -7,7 +7,7 @@
 //! linearly transformed cosine that stands for GGX of that roughness ([`fit`]). [`reference`] says the same from the definitions
 //! in f64; [`quality`] measures one by the other; [`paper`] has the paper's own fits, for comparison.
 //!
-//! What deviates from the paper, and why, stands on top of each file and in `docs/METHODS.md`. The main points:
+//! What deviates from the paper, and why, stands on top of each file and in `docs/methods/area-light.md`. The main points:
 //! - the mean resultant length has a closed form, which is inverted exactly ([`spread`]);
 //! - the roughness of normals is matched where a highlight sees it, not by the length alone ([`spread`]);
 //! - normals may vary more along one direction than across: a few lobes along it share the light ([`eval`]);

@@ -18,6 +18,29 @@ pub fn bind_pack(gpu: &Gpu, pack: &Pack, name: &str, bindings: &[Binding], wrap:
     Ok(collect_pack(gpu, pack, name, bindings, wrap)?.finish(gpu))
 }
 
+/// Binds sections of several materials of a pack one after the other in a group; those of no name as if they were missing. `wrap` is
+/// how maps go on beyond their edges.
+///
+/// # Errors
+/// [`GpuError::BadPack`] for a section that is damaged, or larger than the device binds.
+pub fn bind_parts(
+    gpu: &Gpu,
+    pack: &Pack,
+    parts: &[(Option<&str>, &[Binding])],
+    wrap: Wrap,
+) -> Result<Resources, GpuError> {
+    let mut set = ResourceSet::default();
+    for (name, bindings) in parts {
+        let content = |kind: FourCc| {
+            let Some(entry) = name.and_then(|name| pack.find(kind, name)) else { return Ok(None) };
+            let payload = pack.payload(entry).map_err(|issue| GpuError::BadPack(issue.to_string()))?;
+            Ok(Some((entry.resource, payload)))
+        };
+        bind(gpu, &mut set, &content, bindings, wrap)?;
+    }
+    Ok(set.finish(gpu))
+}
+
 /// Binds sections that are not in a pack yet; one of each kind. See [`bind_pack`].
 ///
 /// # Errors
@@ -37,38 +60,13 @@ pub fn collect_pack(
     bindings: &[Binding],
     wrap: Wrap,
 ) -> Result<ResourceSet, GpuError> {
-    collect_parts(gpu, pack, &[(Some(name), bindings)], wrap)
-}
-
-/// Binds sections of several materials of a pack one after the other in a group; those of no name as if they were missing. `wrap` is
-/// how maps go on beyond their edges.
-///
-/// # Errors
-/// Those of [`bind_pack`].
-pub fn bind_parts(
-    gpu: &Gpu,
-    pack: &Pack,
-    parts: &[(Option<&str>, &[Binding])],
-    wrap: Wrap,
-) -> Result<Resources, GpuError> {
-    Ok(collect_parts(gpu, pack, parts, wrap)?.finish(gpu))
-}
-
-fn collect_parts(
-    gpu: &Gpu,
-    pack: &Pack,
-    parts: &[(Option<&str>, &[Binding])],
-    wrap: Wrap,
-) -> Result<ResourceSet, GpuError> {
+    let content = |kind: FourCc| {
+        let Some(entry) = pack.find(kind, name) else { return Ok(None) };
+        let payload = pack.payload(entry).map_err(|issue| GpuError::BadPack(issue.to_string()))?;
+        Ok(Some((entry.resource, payload)))
+    };
     let mut set = ResourceSet::default();
-    for (name, bindings) in parts {
-        let content = |kind: FourCc| {
-            let Some(entry) = name.and_then(|name| pack.find(kind, name)) else { return Ok(None) };
-            let payload = pack.payload(entry).map_err(|issue| GpuError::BadPack(issue.to_string()))?;
-            Ok(Some((entry.resource, payload)))
-        };
-        collect(gpu, &mut set, &content, bindings, wrap)?;
-    }
+    bind(gpu, &mut set, &content, bindings, wrap)?;
     Ok(set)
 }
 
@@ -87,12 +85,12 @@ pub fn collect_sections(
         Ok(section.map(|section| (section.resource, Cow::Borrowed(&section.payload[..]))))
     };
     let mut set = ResourceSet::default();
-    collect(gpu, &mut set, &content, bindings, wrap)?;
+    bind(gpu, &mut set, &content, bindings, wrap)?;
     Ok(set)
 }
 
-/// Adds the sections that `bindings` name, by `content`.
-fn collect<'a>(
+/// Adds the sections that `bindings` name, by `content`, to a bind group.
+fn bind<'a>(
     gpu: &Gpu,
     set: &mut ResourceSet,
     content: &dyn Fn(FourCc) -> Result<Option<Content<'a>>, GpuError>,

@@ -13,9 +13,10 @@ use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
 use glint_bake_core::ndf_maps::sections::{from_pack, layer_sections, to_sections};
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
-use glint_formats::ndf_maps::{DensityStorage, LayeredMaterial, MaterialUniform, RECORDS};
+use glint_formats::ndf_maps::{DensityStorage, LayeredMaterial, MaterialUniform, UNIFORM_BYTES};
 use glint_formats::{Codec, Limits, Pack, PackBuilder, Wrap};
 use glint_shaders::assert_same_layout;
+use glint_shaders::layout::layout;
 use glint_view::gpu::{Gpu, answer};
 use glint_view::methods::ndf_maps::bind;
 use rand::{Rng, RngExt};
@@ -432,5 +433,7 @@ fn the_uniform_lies_as_the_shader_reads_it() {
         most_texels,
         layer
     );
-    assert!(source.contains(&format!("array<vec4u, {RECORDS}>")));
+    let whole = layout(&source, "NdfMapsData").unwrap();
+    assert_eq!(whole.members[1], ("records".into(), size_of::<MaterialUniform>() as u32));
+    assert_eq!(whole.size as usize, UNIFORM_BYTES);
 }
