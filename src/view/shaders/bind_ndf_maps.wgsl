@@ -1,12 +1,12 @@
 // Bindings of NDF maps for ndf_maps/query.wgsl: group 1, sections as they lie in the pack, those of the base and then those of the coat
 // over it. Without a coat zeros are bound in its place.
+//
+// The including program defines NDF_MAPS_LAYERED: bool, whether a coat may be bound; false, where that is known when the pipeline is
+// made, takes all that belongs to one out of the program.
 
 #import ndf_maps::query
 #import bind_loads
 #import bind_table
-
-// Whether a coat may be bound; false takes all that belongs to one out of the program.
-override NDF_MAPS_LAYERED: bool = true;
 
 // Section NMUB.
 struct NdfMapsData {

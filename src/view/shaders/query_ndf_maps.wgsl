@@ -2,6 +2,9 @@
 
 #import bind_ndf_maps
 
+// Both layers are asked, by their numbers.
+const NDF_MAPS_LAYERED: bool = true;
+
 struct NdfMapsQuery {
     mean: vec2f,
     s: vec2f,

@@ -12,7 +12,9 @@ const SHADE_NDF_SWAP: u32 = 1u;
 const SHADE_NDF_ACCURATE: u32 = 2u;
 
 // What is known of the data when the pipeline is made, so that it holds no code for what they do not need; by default all is read
-// from the data. bind_ndf_maps.wgsl has one more. Cells of the stochastic placement along an axis, 0 where materials are tiled; 0xffffffff for any.
+// from the data. Whether there are two layers.
+override NDF_MAPS_LAYERED: bool = true;
+// Cells of the stochastic placement along an axis, 0 where materials are tiled; 0xffffffff for any.
 override NDF_MAPS_CELLS: u32 = 0xffffffffu;
 // Whether density is in blocks: 1 or 0, 2 for any.
 override NDF_MAPS_BLOCKS: u32 = 2u;
