@@ -56,7 +56,7 @@ pub struct Resources {
     pub group: wgpu::BindGroup,
     /// What the user should know: formats that were converted.
     pub notes: Vec<String>,
-    /// Bytes on the GPU, of textures and buffers.
+    /// Bytes of the sections of a pack among them.
     pub bytes: u64,
     /// The sections of a pack among them, in the order of bindings.
     pub sections: Vec<(FourCc, BoundSection)>,
@@ -71,13 +71,20 @@ impl ResourceSet {
         self.resources.push(resource);
     }
 
+    /// Notes the resource of `bytes` bytes if it holds a section.
+    fn bound(&mut self, resource: BoundSection, bytes: usize) {
+        if let Some(kind) = self.next.take() {
+            self.bytes += bytes as u64;
+            self.sections.push((kind, resource));
+        }
+    }
+
     fn buffer(&mut self, gpu: &Gpu, ty: wgpu::BufferBindingType, usage: wgpu::BufferUsages, contents: &[u8]) {
         // Bindings have a multiple of four bytes, and at least one vector of a storage array.
         let mut padded = contents.to_vec();
         padded.resize(contents.len().next_multiple_of(16).max(16), 0);
-        self.bytes += contents.len() as u64;
         let buffer = gpu.buffer(usage | wgpu::BufferUsages::COPY_SRC, &padded);
-        self.sections.extend(self.next.take().map(|kind| (kind, BoundSection::Buffer(buffer.clone()))));
+        self.bound(BoundSection::Buffer(buffer.clone()), padded.len());
         self.push(
             wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
             Resource::Buffer(buffer),
@@ -126,10 +133,9 @@ impl ResourceSet {
             usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         };
-        self.bytes += contents.len() as u64;
         let texture =
             gpu.device.create_texture_with_data(&gpu.queue, &descriptor, TextureDataOrder::MipMajor, contents);
-        self.sections.extend(self.next.take().map(|kind| (kind, BoundSection::Texture(texture.clone()))));
+        self.bound(BoundSection::Texture(texture.clone()), contents.len());
         let view = texture
             .create_view(&wgpu::TextureViewDescriptor { dimension: Some(shape.dimension), ..Default::default() });
         self.push(

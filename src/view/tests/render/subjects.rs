@@ -101,13 +101,17 @@ fn area_light_pack() -> Pack {
     pack(area_light::sections::to_sections("waves", &baked, Codec::None))
 }
 
+/// A pack of every method.
+pub fn packs() -> &'static [Pack] {
+    static PACKS: OnceLock<Vec<Pack>> = OnceLock::new();
+    PACKS.get_or_init(|| {
+        vec![dictionary_pack(), ndf_maps_pack(), lobes_pack(), surface_pack(), environment_pack(), area_light_pack()]
+    })
+}
+
 /// Subjects of every method.
 pub fn subjects(gpu: &Gpu) -> Subjects {
-    static PACKS: OnceLock<Vec<Pack>> = OnceLock::new();
-    let packs = PACKS.get_or_init(|| {
-        vec![dictionary_pack(), ndf_maps_pack(), lobes_pack(), surface_pack(), environment_pack(), area_light_pack()]
-    });
-    let subjects = Subjects::of_packs(gpu, &packs.iter().collect::<Vec<_>>(), &[]).unwrap();
+    let subjects = Subjects::of_packs(gpu, &packs().iter().collect::<Vec<_>>(), &[]).unwrap();
     for method in Method::ALL {
         assert!(subjects.shown.iter().any(|shown| shown.method == *method), "{} is not shown", method.name());
     }
