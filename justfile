@@ -31,31 +31,23 @@ view *ARGS:
 dist TRIPLE="x86_64-unknown-linux-gnu":
     RUSTFLAGS="-C target-feature=+crt-static -C relocation-model=static" cargo build --release --locked --target {{TRIPLE}}
 
-# Measure speed against error anew: the reports and plots in docs/, and their headlines in the README.
-report MAPS="../shared/data/tiny/brushed_16x16.png":
-    cargo run --release --bin glint-bake -- report {{MAPS}} -o docs
-    cargo run --release -p glint-bake-core --example dictionary_report -- --svg docs/dictionary-report.svg --readme README.md > docs/dictionary-report.md
-    cargo run --release -p glint-bake-core --example counting_report -- --svg docs/counting-report.svg > docs/counting-report.md
-    cargo run --release --example environment_report -- --svg docs/environment-report.svg > docs/environment-report.md
-    cargo run --release --example glint_report -- "${GLINT_DATA:-../shared/data}" > docs/environment-glints.md
-    cargo run --release --example area_light_report -- "${GLINT_DATA:-../shared/data}" --svg docs/area-light-report.svg > docs/area-light-report.md
-    cargo run --release --example lobes_report -- "${GLINT_DATA:-../shared/data}" --svg docs/lobes-report.svg > docs/lobes-report.md
-    cargo run --release --example surface_report -- "${GLINT_DATA:-../shared/data}" > docs/surface-report.md
+# Measure speed against error anew: the reports and plots in docs/reports, and the headline in the README. METHODS are those of
+# `glint-bake report --list`, all when none is named; frames need an adapter, and hours on a software one.
+report *METHODS:
+    cargo run --release --features view --bin glint-bake -- report {{METHODS}} --data "${GLINT_DATA:-../shared/data}" -o docs/reports --readme README.md
 
-# Measure the viewer's frame times anew (an adapter, and minutes on a software one), and draw its gallery (ImageMagick).
-view-report *ARGS:
+# Draw the viewer's gallery anew (an adapter, ImageMagick).
+gallery:
     cargo build --release --features view --bins
-    scripts/view_report.sh {{ARGS}} > docs/viewer-report.md
     scripts/gallery.sh
 
 # Fit the LTC tables of area lights anew; they come with the program, and a test checks that this gives the same bytes.
 ltc-tables:
     cargo run --release -p glint-bake-core --example fit_ltc_tables bake/src/area_light/ltc_tables.bin
 
-# The NDF maps' report with few footprints, into target/bench: minutes instead of tens of minutes.
-bench MAPS="../shared/data/tiny/brushed_16x16.png":
-    mkdir -p target/bench
-    cargo run --release --bin glint-bake -- report {{MAPS}} -o target/bench --footprints 4
+# All reports with few samples, into target/bench: minutes instead of hours, to see whether all works.
+bench *METHODS:
+    cargo run --release --features view --bin glint-bake -- report {{METHODS}} --quick --data "${GLINT_DATA:-../shared/data}" -o target/bench
 
 # Feed the pack reader with arbitrary bytes (needs nightly Rust and cargo-fuzz).
 fuzz TARGET="read_pack" SECONDS="60":

@@ -3,11 +3,11 @@
 use glam::{DVec2, Vec2};
 use glint_bake_core::area_light::fetch::{Maps, fetch};
 use glint_bake_core::area_light::{self, AreaLightOptions};
-use glint_bake_core::ndf_maps::bake::{NdfMapsOptions, bake};
-use glint_bake_core::ndf_maps::eval::Material;
-use glint_bake_core::ndf_maps::placement::{self, PlacementOptions};
-use glint_bake_core::ndf_maps::surface::EvalSettings;
-use glint_bake_core::ndf_maps::transform::TransformRanges;
+use glint_bake_core::ndf_maps::bake::bake_maps;
+use glint_bake_core::ndf_maps::baked::Material;
+use glint_bake_core::ndf_maps::eval::EvalSettings;
+use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, TransformRanges};
+use glint_bake_core::ndf_maps::placement::place;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::quality::sweep::footprints;
@@ -30,8 +30,8 @@ fn wide_footprints_read_the_same_tiles() {
     let map = map(32, 16);
     let material = |min_tile: u32| {
         let options = NdfMapsOptions { roughness: 0.1, max_error: 0.05, min_tile, ..NdfMapsOptions::default() };
-        let placement = placement::bake(&map, 0.1, &PlacementOptions::Tiled(TransformRanges::default())).unwrap();
-        Material { maps: bake(&map, &options, &Silent).unwrap(), placement }
+        let placement = place(&map, 0.1, &PlacementOptions::Tiled(TransformRanges::default())).unwrap();
+        Material { maps: bake_maps(&map, &options, &Silent).unwrap(), placement }
     };
     let (all, some) = (material(2), material(8));
     let edges = |material: &Material| material.maps.params.levels.iter().map(|l| l.tile_texels).collect::<Vec<_>>();

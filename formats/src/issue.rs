@@ -89,10 +89,11 @@ issue_codes! {
     DictionaryRow = 3023, "dictionary row not normalised";
     EnvironmentParameters = 3030, "environment parameter out of range";
     EnvironmentLevels = 3031, "environment levels do not rise from 0";
-    EnvironmentShape = 3032, "environment texture differs from parameters";
+    EnvironmentShape = 3032, "environment section differs from parameters";
     EnvironmentRadiance = 3033, "environment radiance out of range";
     EnvironmentIndicators = 3034, "environment indicators are no shares of a whole";
     EnvironmentAlbedo = 3035, "environment albedo out of range";
+    EnvironmentUniform = 3036, "environment uniform differs from parameters";
     AreaLightParameters = 3040, "area light parameter out of range";
     AreaLightShape = 3041, "area light texture differs from parameters";
     AreaLightNormal = 3042, "area light normal out of range";
@@ -113,6 +114,7 @@ issue_codes! {
     SynthesisOffset = 3062, "synthesis patch outside sample";
     SynthesisSeam = 3063, "synthesis seam path broken";
     SurfaceMismatch = 3064, "lobes and synthesis of a surface do not fit";
+    SynthesisPadding = 3065, "synthesis buffer does not end with zeros";
 }
 
 impl fmt::Display for IssueCode {

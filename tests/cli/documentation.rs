@@ -106,7 +106,7 @@ fn help_is_as_recorded() {
 
 #[test]
 fn the_readme_shows_the_headline_of_the_dictionary_report() {
-    let report = fs::read_to_string(root().join("docs/dictionary-report.md")).unwrap();
+    let report = fs::read_to_string(root().join("docs/reports/dictionary.md")).unwrap();
     let headline = report.lines().find(|line| line.starts_with("Default dictionary (")).unwrap();
     let readme = fs::read_to_string(root().join("README.md")).unwrap();
     assert!(readme.lines().any(|line| line == headline), "run `just report`, which writes both");

@@ -76,7 +76,10 @@ fn tables_of_flags_are_a_page_or_parts_of_one() {
     fs::write(&path, "By hand.\n<!-- flags of glint-info -->\nstale row\n<!-- end of flags -->\n").unwrap();
     bake(folder.path(), &["generate", "markdown", "-o", "docs"]).ok();
     let page = fs::read_to_string(&path).unwrap();
-    assert!(page.starts_with("By hand.\n<!-- flags of glint-info -->\n| flag |") && !page.contains("stale row"), "{page}");
+    assert!(
+        page.starts_with("By hand.\n<!-- flags of glint-info -->\n| flag |") && !page.contains("stale row"),
+        "{page}"
+    );
     fs::write(&path, "<!-- flags of glint-inform --><!-- end of flags -->").unwrap();
     assert_eq!(bake(folder.path(), &["generate", "markdown", "-o", "docs"]).code, 4);
 }

@@ -11,7 +11,7 @@ use glint_formats::{Limits, Pack};
 use glint_view::bench::{BenchSettings, Setup, measure, table};
 use glint_view::gpu::{Gpu, GpuError, Wish};
 use glint_view::render::{
-    LightKind, Material, Overlay, Picture, Renderer, SWAP_LAYERS, Shown, ToneMapping, View, picture,
+    LightKind, Material, Method, Overlay, Picture, Renderer, SWAP_LAYERS, Shown, ToneMapping, View, picture,
 };
 use glint_view::scene::{Mesh, MeshError, Orbit, Placement};
 use glint_view::settings::{Against, Layout, Settings};
@@ -35,9 +35,9 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     if args.picture.opens_window(args.list) {
         return window(args, placement, reports, mesh, terminal);
     }
-    let gpu = Gpu::headless(&wish(args)).map_err(failure)?;
+    let gpu = Gpu::headless(&wish(args))?;
     terminal.detail(&format!("adapter: {}", gpu.adapter_line()));
-    let subjects = upload(&gpu, &reports, &args.material).map_err(failure)?;
+    let subjects = upload(&gpu, &reports, &args.material)?;
     for note in subjects.notes() {
         terminal.say(&note);
     }
@@ -48,7 +48,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     if args.picture.bench {
         return bench(args, &gpu, &subjects, &settings);
     }
-    let mut renderer = subjects.renderer(&gpu, &mesh).map_err(failure)?;
+    let mut renderer = subjects.renderer(&gpu, &mesh)?;
     if let Some(path) = &args.picture.headless {
         let view = settings.view(&subjects.shown, size(args));
         return shoot(&gpu, &mut renderer, &view, args.picture.samples, path, terminal);
@@ -108,7 +108,7 @@ fn window(
     glint_view::window::run(start).map_err(|error| match error {
         WindowError::NoWindow(_) => Failure::new(Exit::Unsupported, error.to_string()),
         WindowError::Settings(message) => Failure::usage(message),
-        WindowError::Gpu(error) => failure(error),
+        WindowError::Gpu(error) => error.into(),
     })
 }
 
@@ -120,15 +120,6 @@ fn save(picture: &Picture, terminal: Terminal) -> Result<String, String> {
     let said = format!("{}: written", path.display());
     terminal.say(&said);
     Ok(said)
-}
-
-fn failure(error: GpuError) -> Failure {
-    let exit = match error {
-        GpuError::NoAdapter { .. } | GpuError::NoDevice { .. } => Exit::Unsupported,
-        GpuError::Failed(_) => Exit::Unexpected,
-        GpuError::BadPack(_) => Exit::BadInput,
-    };
-    Failure::new(exit, error.to_string())
 }
 
 fn check_outputs(args: &Args) -> Result<(), Failure> {
@@ -171,7 +162,10 @@ fn entry_name(shown: &Shown) -> String {
 fn list(gpu: &Gpu, subjects: &Subjects) -> String {
     let mut text = format!("adapter  {}\n", gpu.adapter_line());
     for shown in &subjects.shown {
-        text.push_str(&format!("{}  {} bytes on the GPU\n", entry_name(shown), shown.data.bytes));
+        // What an environment shows is what lights the scene.
+        let environment = subjects.environment.as_ref().filter(|_| shown.method == Method::Environment);
+        let bytes = environment.unwrap_or(&shown.data).bytes;
+        text.push_str(&format!("{}  {bytes} bytes on the GPU\n", entry_name(shown)));
     }
     text
 }
@@ -282,7 +276,7 @@ fn shoot(
     path: &Path,
     terminal: Terminal,
 ) -> Result<(), Failure> {
-    let picture = picture(gpu, renderer, view, samples).map_err(failure)?;
+    let picture = picture(gpu, renderer, view, samples)?;
     output::write(path, &png(&picture))?;
     terminal.say(&format!("{}: written", path.display()));
     Ok(())
@@ -316,7 +310,7 @@ fn bench(args: &Args, gpu: &Gpu, subjects: &Subjects, settings: &Settings) -> Re
     let mut rows = Vec::new();
     for index in 0..subjects.shown.len() {
         for wall in Setup::of(&subjects.shown, index, settings, bench) {
-            rows.push(measure(gpu, subjects, &wall, bench).map_err(failure)?);
+            rows.push(measure(gpu, subjects, &wall, bench)?);
         }
     }
     output::print(&format!("{}, {} x {}\n\n{}", gpu.adapter_line(), size[0], size[1], table(&rows)))

@@ -5,7 +5,7 @@ use crate::delivery::Delivery;
 use clap::ValueEnum;
 use glint_bake_core::environment::EnvironmentOptions;
 use glint_bake_core::environment::options::{DEFAULT_MIN_FACE_SIZE, LevelCount};
-use glint_formats::environment::{Kernel, LevelChoice, Storage};
+use glint_formats::environment::{Kernel, LevelChoice};
 use std::path::PathBuf;
 
 /// Lines that `--help` shows and a test runs.
@@ -69,11 +69,6 @@ pub struct Args {
     /// Filter: ndf (the paper's, D times masking) or ggx-nl (D times cosine)
     #[arg(long, value_name = "KERNEL", default_value = "ndf", hide_possible_values = true, help_heading = "Bake")]
     pub kernel: KernelArg,
-    /// Texels: f16, f32, or unorm16 for levels with f16 for radiance
-    ///
-    /// Half floats may not hold a sun to a small --max-error; a warning says so.
-    #[arg(long, value_name = "FORMAT", default_value = "f16", hide_possible_values = true, help_heading = "Bake")]
-    pub format: FormatArg,
     /// Texels a mip that are compared with exact sums; 0 for none
     #[arg(long, value_name = "N", default_value = "16", allow_negative_numbers = true, help_heading = "Bake")]
     pub measure: u32,
@@ -118,17 +113,6 @@ pub enum LevelChoiceArg {
     LogUniform,
 }
 
-/// `--format`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum FormatArg {
-    /// Half floats.
-    F16,
-    /// Floats.
-    F32,
-    /// Levels as 16-bit UNORM, radiance as half floats.
-    Unorm16,
-}
-
 impl Args {
     /// Edge of a face of the last mip in texels.
     fn min_face_size(&self) -> u32 {
@@ -154,11 +138,6 @@ impl Args {
             kernel: match self.kernel {
                 KernelArg::Ndf => Kernel::Ndf,
                 KernelArg::GgxNl => Kernel::GgxNl,
-            },
-            storage: match self.format {
-                FormatArg::F16 => Storage::F16,
-                FormatArg::F32 => Storage::F32,
-                FormatArg::Unorm16 => Storage::Unorm16,
             },
             measured_texels: self.measure,
         }
@@ -197,7 +176,6 @@ impl Args {
         options.push("coloured", self.coloured);
         options.push("max-error", self.max_error);
         options.push_choice("kernel", &self.kernel);
-        options.push_choice("format", &self.format);
         options.push("measure", self.measure);
         options
     }

@@ -69,7 +69,7 @@ fn warn_of_rounding(params: &EnvironmentParams, input: &Path, terminal: Terminal
         if *rounding > most {
             terminal.warn(&format!(
                 "{}: mip {mip}: half floats alone make an error of {rounding:.4} of the mean, more than the {most} asked; \
-                 give --format f32",
+                 give a larger --max-error",
                 input.display()
             ));
         }

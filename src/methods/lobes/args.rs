@@ -78,7 +78,7 @@ pub struct Reduction {
     /// How lobes are stored
     #[arg(long, value_name = "STORAGE", default_value = "packed")]
     pub storage: StorageArg,
-    /// Bits a channel of the stored normals
+    /// Bits a channel that stored normals are rounded to; 8 make smaller compressed packs
     ///
     /// Auto is 8 where rounding stays below 0.03 of the roughness, root mean square.
     #[arg(long, value_name = "BITS", default_value = "auto")]
@@ -119,10 +119,10 @@ pub enum StorageArg {
 pub enum NormalsArg {
     /// 8 where rounding does not show at the roughness, else 16
     Auto,
-    /// 2 bytes a texel
+    /// steps of 1/127
     #[value(name = "8")]
     Eight,
-    /// 4 bytes a texel
+    /// steps of 1/32767
     #[value(name = "16")]
     Sixteen,
 }

@@ -6,8 +6,7 @@ use crate::cli::values::{self, SurfaceSize};
 use crate::exit::Failure;
 use crate::output;
 use glint_bake_core::normal_map::NormalMap;
-use glint_bake_core::surface::Surface;
-use glint_bake_core::surface::bake::ALIGNMENT;
+use glint_bake_core::surface::{ALIGNMENT, Surface};
 use glint_bake_core::synthesis::{SynthesisOptions, Target, assemble};
 use std::path::{Path, PathBuf};
 

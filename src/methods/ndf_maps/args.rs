@@ -5,9 +5,9 @@ use crate::cli::{OptionList, RunFlags, values};
 use crate::delivery::Delivery;
 use crate::exit::Failure;
 use clap::ValueEnum;
-use glint_bake_core::ndf_maps::bake::{FINEST_TILE, NdfMapsOptions, ROUGHNESS_RANGE};
-use glint_bake_core::ndf_maps::placement::{PlacementOptions, StochasticOptions};
-use glint_bake_core::ndf_maps::transform::TransformRanges;
+use glint_bake_core::ndf_maps::options::{
+    FINEST_TILE, NdfMapsOptions, PlacementOptions, ROUGHNESS_RANGE, StochasticOptions, TransformRanges,
+};
 use glint_formats::ndf_maps::DensityStorage;
 use std::path::PathBuf;
 

@@ -1,7 +1,7 @@
 //! How many tiles have which error, as an SVG.
 
 use crate::canvas::escape;
-use glint_bake_core::ndf_maps::bake::BakedNdfMaps;
+use glint_bake_core::ndf_maps::baked::BakedNdfMaps;
 use std::fmt::Write;
 
 const BINS: usize = 40;

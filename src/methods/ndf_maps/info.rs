@@ -4,7 +4,7 @@ use super::args::Storage;
 use crate::cli::values::name_of;
 use crate::methods::contents::{Item, decode_all};
 use crate::quantities::{kib, percent};
-use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::sections;
 use glint_formats::ndf_maps::{
     CLASSES, DENSITY, LAYERS, LayeredMaterial, MeasuredError, NOISE, NORMALS, PALETTE, PARAMS, PLACEMENT,

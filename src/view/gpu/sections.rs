@@ -76,13 +76,16 @@ fn bind<'a>(
 fn sample_type(view: View) -> wgpu::TextureSampleType {
     match view {
         View::Uint2d => wgpu::TextureSampleType::Uint,
-        View::Float2d | View::FloatCube | View::FloatCubeArray => wgpu::TextureSampleType::Float { filterable: true },
+        View::Float2d | View::Float2dArray | View::FloatCube | View::FloatCubeArray => {
+            wgpu::TextureSampleType::Float { filterable: true }
+        }
     }
 }
 
 fn dimension(view: View) -> TextureViewDimension {
     match view {
         View::Float2d | View::Uint2d => TextureViewDimension::D2,
+        View::Float2dArray => TextureViewDimension::D2Array,
         View::FloatCube => TextureViewDimension::Cube,
         View::FloatCubeArray => TextureViewDimension::CubeArray,
     }
@@ -93,7 +96,7 @@ fn absent(view: View) -> (GpuTexture, Vec<u8>) {
     let (format, bytes, layers) = match view {
         View::Uint2d => (TextureFormat::R32Uint, 4, 1),
         View::Float2d => (TextureFormat::Rgba8Unorm, 4, 1),
-        View::FloatCube | View::FloatCubeArray => (TextureFormat::Rgba8Unorm, 4, 6),
+        View::Float2dArray | View::FloatCube | View::FloatCubeArray => (TextureFormat::Rgba8Unorm, 4, 6),
     };
     let texture = GpuTexture { format, size: [1; 2], layers, mips: 1, dimension: dimension(view) };
     (texture, vec![0; bytes * layers as usize])

@@ -1,0 +1,202 @@
+//! What a report measures of one example.
+
+use crate::report::settings::Settings;
+use glam::{DVec2, Vec2};
+use glint_bake_core::error::Result;
+use glint_bake_core::footprint::Footprint;
+use glint_bake_core::ndf_maps::bake::bake_maps;
+use glint_bake_core::ndf_maps::baked::Material;
+use glint_bake_core::ndf_maps::eval::{EvalSettings, Terms};
+use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, StochasticOptions, TransformRanges};
+use glint_bake_core::ndf_maps::placement::place;
+use glint_bake_core::ndf_maps::quality::{FootprintErrors, footprint_errors};
+use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
+use glint_bake_core::normal_map::NormalMap;
+use glint_bake_core::progress::Silent;
+use glint_bake_core::quality::sweep::{ANISOTROPIES, FOOTPRINTS, SIGMAS_TEXELS, footprints as sweep_footprints};
+use glint_formats::ndf_maps::{DensityStorage, MeasuredError};
+use std::time::Instant;
+
+/// Everything measured of one example.
+pub struct Example {
+    /// Bake settings, bytes, time and error.
+    pub settings: Vec<Setting>,
+    /// Sizes of footprints on covered surfaces.
+    pub sizes: Vec<Size>,
+    /// Run-time settings.
+    pub dial: Vec<Dial>,
+}
+
+/// One way to bake.
+pub struct Setting {
+    pub roughness: f64,
+    pub label: String,
+    pub bytes: usize,
+    pub milliseconds: f64,
+    pub error: MeasuredError,
+    /// No other setting of this roughness has fewer bytes and a smaller mean error.
+    pub on_front: bool,
+}
+
+/// Footprints of one size.
+pub struct Size {
+    pub placement: &'static str,
+    pub sigma: f64,
+    pub anisotropy: f64,
+    pub errors: FootprintErrors,
+    pub cost: Cost,
+}
+
+/// One run-time setting on the stochastic surface: means over round footprints of all sizes.
+pub struct Dial {
+    pub settings: EvalSettings,
+    pub mean_error: f64,
+    pub cost: Cost,
+}
+
+/// Microseconds on one thread.
+#[derive(Clone, Copy, Default)]
+pub struct Cost {
+    /// To find a footprint's terms.
+    pub gather: f64,
+    /// To evaluate them for one direction.
+    pub query: f64,
+}
+
+/// Run-time settings from fast to accurate; the third is the default.
+const DIAL: [EvalSettings; 4] = [
+    EvalSettings { tile_sigmas: 4.0, lobe_sigmas: 1.0, max_terms: 32, splits: 0, reach: 2.8, probes: 0 },
+    EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 1.0, max_terms: 64, splits: 0, reach: 2.8, probes: 0 },
+    EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 0.75, max_terms: 128, splits: 1, reach: 2.8, probes: 0 },
+    EvalSettings { tile_sigmas: 0.5, lobe_sigmas: 0.5, max_terms: 2048, splits: 2, reach: 2.8, probes: 0 },
+];
+
+/// Measures an example with `count` footprints a size.
+pub fn example(map: &NormalMap, count: u32, scale: &Settings) -> Result<Example> {
+    let maps = bake_maps(map, &NdfMapsOptions::default(), &Silent)?;
+    let one = |degrees: f64| TransformRanges { rotate_degrees: (degrees, degrees), ..TransformRanges::default() };
+    let placements = [
+        ("tiled", PlacementOptions::Tiled(one(20.0))),
+        ("stochastic", PlacementOptions::Stochastic(StochasticOptions::default())),
+    ];
+    let mut sizes = Vec::new();
+    let mut dial = Vec::new();
+    for (name, options) in placements {
+        let placement = place(map, maps.params.intrinsic_roughness as f64, &options)?;
+        let material = Material { maps: maps.clone(), placement };
+        let reference = SurfaceReference::new(map, &material);
+        for anisotropy in ANISOTROPIES {
+            for sigma in SIGMAS_TEXELS {
+                let (errors, cost) = measured(map, &reference, sigma, anisotropy, count, EvalSettings::default());
+                sizes.push(Size { placement: name, sigma, anisotropy, errors, cost });
+            }
+        }
+        if name == "stochastic" {
+            for settings in DIAL {
+                dial.push(dial_setting(map, &reference, settings, count.div_ceil(8)));
+            }
+        }
+    }
+    Ok(Example { settings: settings(map, scale)?, sizes, dial })
+}
+
+fn dial_setting(map: &NormalMap, reference: &SurfaceReference<'_>, settings: EvalSettings, count: u32) -> Dial {
+    let mut dial = Dial { settings, mean_error: 0.0, cost: Cost::default() };
+    let share = 1.0 / SIGMAS_TEXELS.len() as f64;
+    for sigma in SIGMAS_TEXELS {
+        let (errors, cost) = measured(map, reference, sigma, 1.0, count, settings);
+        dial.mean_error += errors.e1.mean * share;
+        dial.cost.gather += cost.gather * share;
+        dial.cost.query += cost.query * share;
+    }
+    dial
+}
+
+fn measured(
+    map: &NormalMap,
+    reference: &SurfaceReference<'_>,
+    sigma: f64,
+    anisotropy: f64,
+    count: u32,
+    settings: EvalSettings,
+) -> (FootprintErrors, Cost) {
+    const SEED: u64 = 5;
+    let extent = DVec2::new(map.width as f64, map.height as f64) * 32.0;
+    let footprints = sweep_footprints(sigma, anisotropy, extent, count, SEED);
+    let errors = footprint_errors(reference, &footprints, settings);
+    // The same 64 places whatever was asked, so that costs compare between reports.
+    let places = sweep_footprints(sigma, anisotropy, extent, FOOTPRINTS, SEED);
+    (errors, cost(reference.material(), &places, settings))
+}
+
+/// Time of a footprint and of a query, over directions spread where the whole example's NDF lies: the least of some
+/// rounds, because other work on the machine only ever adds to it.
+fn cost(material: &Material, footprints: &[Footprint], settings: EvalSettings) -> Cost {
+    const ROUNDS: usize = 16;
+    const SIDE: usize = 8;
+    let top = material.maps.tiles[material.maps.tiles.len() - 1];
+    let low = Vec2::from(top.origin);
+    let size = Vec2::new(top.width() as f32, top.height() as f32) / Vec2::from(top.inv_spacing);
+    let mut least = Cost { gather: f64::INFINITY, query: f64::INFINITY };
+    for _ in 0..ROUNDS {
+        let begin = Instant::now();
+        let terms: Vec<Terms> = footprints.iter().map(|footprint| material.gather(footprint, settings)).collect();
+        least.gather = least.gather.min(begin.elapsed().as_secs_f64() * 1e6 / footprints.len() as f64);
+        let begin = Instant::now();
+        let mut sum = 0.0;
+        for terms in &terms {
+            for k in 0..SIDE * SIDE {
+                let at = Vec2::new((k % SIDE) as f32 + 0.5, (k / SIDE) as f32 + 0.5) / SIDE as f32;
+                sum += material.density(terms, low + at * size);
+            }
+        }
+        std::hint::black_box(sum);
+        let queries = (footprints.len() * SIDE * SIDE) as f64;
+        least.query = least.query.min(begin.elapsed().as_secs_f64() * 1e6 / queries);
+    }
+    least
+}
+
+/// Bakes with every storage and several errors asked, at the roughnesses of the accuracy targets; at the largest alone for
+/// a quick look.
+fn settings(map: &NormalMap, scale: &Settings) -> Result<Vec<Setting>> {
+    let mut all = Vec::new();
+    for roughness in [0.02, 0.01, 0.005].into_iter().take(scale.pick(3, 1)) {
+        let first = all.len();
+        let own = [0.1, 0.05, 0.02, 0.01, 0.005].map(|error| (DensityStorage::SqrtU8, error));
+        let others = [(DensityStorage::F16, 0.01), (DensityStorage::F16, 0.003), (DensityStorage::PaperF32, 0.01)];
+        for (storage, max_error) in own.into_iter().chain(others) {
+            let options = NdfMapsOptions { roughness, max_error, storage, ..NdfMapsOptions::default() };
+            let begin = Instant::now();
+            let baked = bake_maps(map, &options, &Silent)?;
+            all.push(Setting {
+                roughness,
+                label: label(storage, max_error),
+                bytes: baked.compact_bytes(),
+                milliseconds: begin.elapsed().as_secs_f64() * 1e3,
+                error: baked.params.measured,
+                on_front: false,
+            });
+        }
+        mark_front(&mut all[first..]);
+    }
+    Ok(all)
+}
+
+fn label(storage: DensityStorage, max_error: f64) -> String {
+    match storage {
+        DensityStorage::SqrtU8 => format!("u8, {} % asked", max_error * 100.0),
+        DensityStorage::F16 => format!("f16, {} % asked", max_error * 100.0),
+        DensityStorage::PaperF32 => "the paper's layout".to_owned(),
+    }
+}
+
+fn mark_front(settings: &mut [Setting]) {
+    for k in 0..settings.len() {
+        let (bytes, error) = (settings[k].bytes, settings[k].error.mean);
+        let beaten = settings.iter().any(|other| {
+            (other.bytes < bytes && other.error.mean <= error) || (other.bytes <= bytes && other.error.mean < error)
+        });
+        settings[k].on_front = !beaten;
+    }
+}
