@@ -23,12 +23,12 @@ use method::Method;
 use std::sync::Arc;
 
 /// Every method, in the order that help and reports have.
-pub static ALL: [&dyn Method; 5] =
-    [&ndf_maps::NdfMaps, &dictionary::Dictionary, &environment::Environment, &area_light::AreaLight, &lobes::Lobes];
+pub static ALL: &[&dyn Method] =
+    &[&ndf_maps::NdfMaps, &dictionary::Dictionary, &environment::Environment, &area_light::AreaLight, &lobes::Lobes];
 
 /// The method of a name.
 pub fn find(name: &str) -> Option<&'static dyn Method> {
-    ALL.into_iter().find(|method| method.name() == name)
+    ALL.iter().copied().find(|method| method.name() == name)
 }
 
 /// What a pack holds of all methods; without a pack every field is empty.

@@ -120,7 +120,7 @@ fn what_cannot_be_used_is_refused_with_its_reason() {
         (&["--max-error", "0"], 2),
         (&["--max-moment-error", "-1"], 2),
         (&["--floor", "0"], 2),
-        (&["--levels", "auto", "--level-choice", "log-uniform"], 2),
+        (&["--level-choice", "log-uniform", "--levels", "auto"], 2),
         (&["--levels", "1", "--coloured"], 2),
         (&["--max-memory", "64K"], 6),
     ] {
