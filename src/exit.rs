@@ -66,11 +66,11 @@ impl Failure {
     }
 }
 
-/// What went wrong. A bad option is called by its name, which is that of its flag.
+/// What went wrong. An option that is bad or asks for too much is called by its name, which is that of its flag.
 fn message_of(error: &BakeError) -> String {
     let is_name = |text: &str| text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-');
     match error {
-        BakeError::BadOption(what)
+        BakeError::BadOption(what) | BakeError::LimitExceeded(what)
             if what.split_once(": ").is_some_and(|(name, _)| is_name(name) && !name.starts_with('-')) =>
         {
             format!("--{what}")

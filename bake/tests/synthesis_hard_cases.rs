@@ -259,7 +259,7 @@ fn options_without_a_meaning_are_named() {
         (|o| o.alignment = 0, "alignment"),
         (|o| o.alignment = 5, "alignment"),
         (|o| o.alpha = f64::NAN, "alpha"),
-        (|o| o.error_tolerance = f64::NAN, "error_tolerance"),
+        (|o| o.error_tolerance = f64::NAN, "error-tolerance"),
         (|o| o.max_candidates = 0, "candidates"),
         (|o| o.target = Target::Patches { width: 0, height: 5 }, "synthesize"),
         (|o| o.target = Target::Unbounded { colours: 5, variants: 1 }, "colours"),

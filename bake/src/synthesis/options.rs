@@ -107,9 +107,9 @@ impl SynthesisOptions {
             return bad(format!("alpha: expected 0 to 1, found {}", self.alpha));
         }
         if !(self.error_tolerance >= 0.0 && self.error_tolerance <= 1e6) {
-            return bad(format!("error_tolerance: expected 0 to 1e6, found {}", self.error_tolerance));
+            return bad(format!("error-tolerance: expected 0 to 1e6, found {}", self.error_tolerance));
         }
-        in_range("max_candidates", (1, MAX_CANDIDATES), self.max_candidates)?;
+        in_range("max-candidates", (1, MAX_CANDIDATES), self.max_candidates)?;
         match self.target {
             Target::Patches { width, height } => self.validate_size(width, height),
             Target::Unbounded { colours, variants } => self.validate_tiles(colours, variants),
