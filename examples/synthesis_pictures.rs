@@ -10,7 +10,7 @@ use glint_bake::canvas::Canvas;
 use glint_bake::input::{Crop, InputOptions, load_normal_map, synthetic};
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
-use glint_bake_core::synthesis::measure::{feature_ends, repetition, whole_share};
+use glint_bake_core::synthesis::quality::{feature_ends, repetition, whole_share};
 use glint_bake_core::synthesis::{Synthesis, SynthesisOptions, Target, assemble, bake};
 use glint_formats::Wrap;
 use std::path::Path;

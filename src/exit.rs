@@ -62,7 +62,20 @@ impl Failure {
 
     /// A bake of `path` that cannot be done.
     pub fn bake(path: &Path, error: &BakeError) -> Failure {
-        Failure::new(exit_of(error), format!("{}: {error}", path.display()))
+        Failure::new(exit_of(error), format!("{}: {}", path.display(), message_of(error)))
+    }
+}
+
+/// What went wrong. A bad option is called by its name, which is that of its flag.
+fn message_of(error: &BakeError) -> String {
+    let is_name = |text: &str| text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-');
+    match error {
+        BakeError::BadOption(what)
+            if what.split_once(": ").is_some_and(|(name, _)| is_name(name) && !name.starts_with('-')) =>
+        {
+            format!("--{what}")
+        }
+        _ => error.to_string(),
     }
 }
 
@@ -77,7 +90,7 @@ fn exit_of(error: &BakeError) -> Exit {
 impl From<BakeError> for Failure {
     /// A bake that has no input to name.
     fn from(error: BakeError) -> Failure {
-        Failure::new(exit_of(&error), error.to_string())
+        Failure::new(exit_of(&error), message_of(&error))
     }
 }
 

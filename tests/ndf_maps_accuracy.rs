@@ -3,13 +3,13 @@
 
 mod real_maps;
 
-use glint_bake_core::ndf_maps::bake::{self, BakedNdfMaps, NdfMapsOptions};
-use glint_bake_core::ndf_maps::eval::Material;
-use glint_bake_core::ndf_maps::measure::{footprint_errors, tile_errors};
-use glint_bake_core::ndf_maps::placement::{self, PlacementOptions, StochasticOptions};
+use glint_bake_core::ndf_maps::bake::bake_maps;
+use glint_bake_core::ndf_maps::baked::{BakedNdfMaps, Material};
+use glint_bake_core::ndf_maps::eval::EvalSettings;
+use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, StochasticOptions, TransformRanges};
+use glint_bake_core::ndf_maps::placement::place;
+use glint_bake_core::ndf_maps::quality::{footprint_errors, tile_errors};
 use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
-use glint_bake_core::ndf_maps::surface::EvalSettings;
-use glint_bake_core::ndf_maps::transform::TransformRanges;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::quality::metrics::Summary;
@@ -48,7 +48,7 @@ const CROPS_32: [(&str, u32, u32); 6] = [
 
 fn baked(map: &NormalMap, roughness: f64, max_error: f64) -> BakedNdfMaps {
     let options = NdfMapsOptions { roughness, max_error, storage: DensityStorage::SqrtU8, ..NdfMapsOptions::default() };
-    bake::bake(map, &options, &Silent).unwrap()
+    bake_maps(map, &options, &Silent).unwrap()
 }
 
 /// Bakes `map` for σ_r and the E₁ asked, and holds decoded tiles against exact ones: all of a small example at the
@@ -63,7 +63,7 @@ fn check_tiles(name: &str, map: &NormalMap, roughness: f64, asked: f64, stride: 
     let e1 = Summary::of(exact.iter().map(|e| e.e1).collect());
     println!(
         "{name}: σ_r {roughness}, {:.1} KiB, recorded E₁ mean {:.4} worst {:.4}; exact, of {} tiles: {:.4}, {:.4}",
-        baked.gpu_bytes() as f64 / 1024.0,
+        baked.compact_bytes() as f64 / 1024.0,
         measured.mean,
         measured.worst,
         exact.len(),
@@ -116,7 +116,7 @@ fn tiles_at_small_roughness_are_as_exact_as_asked() {
 #[test]
 fn sizes_stay_within_the_byte_limits() {
     let Some(data) = real_maps::data() else { return };
-    let size = |name: &str, crop| baked(&real_maps::load(&data, name, crop), 0.02, 0.01).gpu_bytes();
+    let size = |name: &str, crop| baked(&real_maps::load(&data, name, crop), 0.02, 0.01).compact_bytes();
     assert!(size("tiny/brushed_16x16.png", None) <= 96 * 1024);
     for (name, x, y) in CROPS_16 {
         let bytes = size(name, Some((x, y, 16)));
@@ -134,7 +134,7 @@ fn sizes_stay_within_the_byte_limits() {
 /// Mean E₁ over two random footprints of each size on a surface covered with `map`.
 fn surface_error(map: &NormalMap, options: &PlacementOptions, sizes: &[(f64, f64)]) -> f64 {
     let maps = baked(map, 0.02, 0.01);
-    let material = Material { placement: placement::bake(map, 0.02, options).unwrap(), maps };
+    let material = Material { placement: place(map, 0.02, options).unwrap(), maps };
     let extent = glam::DVec2::new(map.width as f64, map.height as f64) * 32.0;
     let reference = SurfaceReference::new(map, &material);
     let mut total = 0.0;

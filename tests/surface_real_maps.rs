@@ -6,7 +6,7 @@ use glint_bake_core::lobes::LobesOptions;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::surface::quality::{Exact, Measured, seam_footprints};
-use glint_bake_core::surface::{SurfaceSettings, bake};
+use glint_bake_core::surface::{SurfaceOptions, SurfaceSettings, bake};
 use glint_bake_core::synthesis::SynthesisOptions;
 use glint_formats::Wrap;
 use real_maps::{data, load};
@@ -26,9 +26,9 @@ fn seams_are_no_worse_than_the_inside_of_patches() {
     let Some(data) = data() else { return };
     for name in MAPS {
         let sample = NormalMap { wrap: Wrap::Clamp, ..load(&data, name, Some((0, 0, 128))) };
-        let options = SynthesisOptions { alignment: 16, ..SynthesisOptions::default() };
+        let synthesis = SynthesisOptions { alignment: 16, ..SynthesisOptions::default() };
         let lobes = LobesOptions { footprints: 0, ..LobesOptions::default() };
-        let surface = bake(&sample, &lobes, &options, &Silent).unwrap();
+        let surface = bake(&sample, &SurfaceOptions { lobes: lobes.clone(), synthesis }, &Silent).unwrap();
         assert!(surface.gpu_bytes() < 800_000, "{name}: {}", surface.gpu_bytes());
         let exact = Exact { surface: &surface, sample: &sample, roughness: lobes.roughness, refinement: 1.0 };
         for sigma in [1.0, 2.0, 4.0, 8.0] {

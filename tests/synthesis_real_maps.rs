@@ -5,7 +5,7 @@ mod real_maps;
 use glam::DVec2;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
-use glint_bake_core::synthesis::measure::repetition;
+use glint_bake_core::synthesis::quality::repetition;
 use glint_bake_core::synthesis::{SynthesisOptions, Target, assemble, bake};
 use glint_formats::Wrap;
 use real_maps::{data, load};

@@ -7,7 +7,7 @@ use glint_bake_core::environment::eval::{
     environment_areas, environment_mip, facet_moments, level_probabilities, std_factor,
 };
 use glint_bake_core::environment::image::{direction, luminance};
-use glint_bake_core::environment::levels::{Seen, fewest, log_uniform, optimal, shares};
+use glint_bake_core::environment::levels::{RadianceHistogram, fewest, log_uniform, optimal, shares};
 use glint_bake_core::environment::lookup::{colour_at, cube_taps, radiance_at};
 use glint_bake_core::environment::options::LevelCount;
 use glint_bake_core::environment::reference::{filtered, ggx, second_moments};
@@ -59,35 +59,35 @@ fn shares_of_levels_keep_the_mean_and_add_up_to_one() {
 
 #[test]
 fn the_dynamic_programme_finds_the_best_of_all_choices() {
-    let seen = Seen::new(&image(), Kernel::Ndf);
-    let (best, error) = optimal(&seen, 4);
+    let histogram = RadianceHistogram::new(&image(), Kernel::Ndf);
+    let (best, error) = optimal(&histogram, 4);
     assert_eq!((best.len(), best[0]), (4, 0.0));
-    assert!((seen.error(&best) - error).abs() < 1e-9 * (1.0 + error), "{error} {}", seen.error(&best));
+    assert!((histogram.error(&best) - error).abs() < 1e-9 * (1.0 + error), "{error} {}", histogram.error(&best));
     // No other choice of the two levels between is better.
     let top = best[3];
     for a in 1..60 {
         for b in a + 1..60 {
             let level = |k: i32| top * 10f64.powf(-6.0 * (1.0 - f64::from(k) / 60.0));
-            assert!(seen.error(&[0.0, level(a), level(b), top]) >= error * (1.0 - 1e-9), "{a} {b}");
+            assert!(histogram.error(&[0.0, level(a), level(b), top]) >= error * (1.0 - 1e-9), "{a} {b}");
         }
     }
     let mut last = f64::INFINITY;
     for count in 2..=16 {
-        let (levels, error) = optimal(&seen, count);
+        let (levels, error) = optimal(&histogram, count);
         assert_eq!(levels.len(), count);
         assert!(levels.windows(2).all(|pair| pair[0] < pair[1]) && error <= last);
-        assert!(error <= seen.error(&log_uniform(&image(), count, 1e-3)) + 1e-12, "{count}");
+        assert!(error <= histogram.error(&log_uniform(&image(), count, 1e-3)) + 1e-12, "{count}");
         last = error;
     }
-    let (levels, error) = fewest(&seen, 0.1);
-    assert!(error <= 0.1 && optimal(&seen, levels.len() - 1).1 > 0.1, "{} {error}", levels.len());
+    let (levels, error) = fewest(&histogram, 0.1);
+    assert!(error <= 0.1 && optimal(&histogram, levels.len() - 1).1 > 0.1, "{} {error}", levels.len());
 }
 
 #[test]
 fn the_estimate_of_the_second_moment_is_that_of_the_reference() {
     let image = image();
-    let seen = Seen::new(&image, Kernel::Ndf);
-    let levels = [log_uniform(&image, 4, 1e-3), optimal(&seen, 4).0];
+    let histogram = RadianceHistogram::new(&image, Kernel::Ndf);
+    let levels = [log_uniform(&image, 4, 1e-3), optimal(&histogram, 4).0];
     let mut errors = [0.0; 2];
     let mut count = 0.0;
     for k in 0..40 {
@@ -100,7 +100,7 @@ fn the_estimate_of_the_second_moment_is_that_of_the_reference() {
         }
     }
     for i in 0..2 {
-        let (measured, estimated) = (errors[i] / count, seen.error(&levels[i]));
+        let (measured, estimated) = (errors[i] / count, histogram.error(&levels[i]));
         assert!((measured / estimated - 1.0).abs() < 0.25, "{measured} {estimated}");
     }
 }

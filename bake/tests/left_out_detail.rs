@@ -1,13 +1,14 @@
 //! Tiles and mips that were left out change nothing for footprints that do not read them.
 
 use glam::{DVec2, Vec2};
-use glint_bake_core::area_light::fetch::{Maps, fetch};
+use glint_bake_core::area_light::baked::Maps;
+use glint_bake_core::area_light::eval::fetch;
 use glint_bake_core::area_light::{self, AreaLightOptions};
-use glint_bake_core::ndf_maps::bake::{NdfMapsOptions, bake};
-use glint_bake_core::ndf_maps::eval::Material;
-use glint_bake_core::ndf_maps::placement::{self, PlacementOptions};
-use glint_bake_core::ndf_maps::surface::EvalSettings;
-use glint_bake_core::ndf_maps::transform::TransformRanges;
+use glint_bake_core::ndf_maps::bake::bake_maps;
+use glint_bake_core::ndf_maps::baked::Material;
+use glint_bake_core::ndf_maps::eval::EvalSettings;
+use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, TransformRanges};
+use glint_bake_core::ndf_maps::placement::place;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::quality::sweep::footprints;
@@ -30,8 +31,8 @@ fn wide_footprints_read_the_same_tiles() {
     let map = map(32, 16);
     let material = |min_tile: u32| {
         let options = NdfMapsOptions { roughness: 0.1, max_error: 0.05, min_tile, ..NdfMapsOptions::default() };
-        let placement = placement::bake(&map, 0.1, &PlacementOptions::Tiled(TransformRanges::default())).unwrap();
-        Material { maps: bake(&map, &options, &Silent).unwrap(), placement }
+        let placement = place(&map, 0.1, &PlacementOptions::Tiled(TransformRanges::default())).unwrap();
+        Material { maps: bake_maps(&map, &options, &Silent).unwrap(), placement }
     };
     let (all, some) = (material(2), material(8));
     let edges = |material: &Material| material.maps.params.levels.iter().map(|l| l.tile_texels).collect::<Vec<_>>();
@@ -62,7 +63,7 @@ fn wide_footprints_fetch_the_same_from_coarse_mips() {
     let map = map(32, 16);
     let material = |skip_mips: u32| {
         let options = AreaLightOptions { anisotropic: true, skip_mips, ..AreaLightOptions::default() };
-        area_light::bake(&map, &options, 1 << 30, &Silent).unwrap()
+        area_light::bake(&map, &options, &Silent).unwrap()
     };
     let (all, some) = (material(0), material(2));
     assert_eq!((some.params.width, some.params.height), (8, 4));

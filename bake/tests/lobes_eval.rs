@@ -6,14 +6,13 @@ use glint_bake_core::lobes::eval::frame;
 use glint_bake_core::lobes::options::{LobesOptions, NormalsChoice};
 use glint_bake_core::lobes::quality::{Gathered, Measured, difference, footprint_errors};
 use glint_bake_core::lobes::query::{Detail, Lod, QuerySettings};
-use glint_bake_core::lobes::reference::Reference;
-use glint_bake_core::lobes::reference_lobes::sum_of_boxes;
+use glint_bake_core::lobes::reference::{Reference, sum_of_boxes};
 use glint_bake_core::lobes::{BakedLobes, bake};
-use glint_bake_core::ndf_maps::bake::{NdfMapsOptions, bake as bake_ndf_maps};
-use glint_bake_core::ndf_maps::eval::Material;
-use glint_bake_core::ndf_maps::placement::{self, PlacementOptions};
+use glint_bake_core::ndf_maps::bake::bake_maps as bake_ndf_maps;
+use glint_bake_core::ndf_maps::baked::Material;
+use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, TransformRanges};
+use glint_bake_core::ndf_maps::placement::place;
 use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
-use glint_bake_core::ndf_maps::transform::TransformRanges;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::quality::metrics::{DiskGrid, e1};
@@ -65,7 +64,7 @@ fn the_reference_is_that_of_ndf_maps() {
     let options = NdfMapsOptions { roughness: ROUGHNESS, max_error: 1.0, ..NdfMapsOptions::default() };
     let material = Material {
         maps: bake_ndf_maps(&map, &options, &Silent).unwrap(),
-        placement: placement::bake(&map, ROUGHNESS, &PlacementOptions::Tiled(TransformRanges::default())).unwrap(),
+        placement: place(&map, ROUGHNESS, &PlacementOptions::Tiled(TransformRanges::default())).unwrap(),
     };
     let other = SurfaceReference::new(&map, &material);
     let reference = Reference::new(&map, Filter::Linear, ROUGHNESS);

@@ -5,11 +5,11 @@ mod hard_maps;
 use glam::{DVec2, Vec2};
 use glint_bake_core::error::BakeError;
 use glint_bake_core::footprint::Footprint;
-use glint_bake_core::ndf_maps::bake::{self, NdfMapsOptions};
-use glint_bake_core::ndf_maps::eval::Material;
-use glint_bake_core::ndf_maps::placement::{self, PlacementOptions, StochasticOptions};
-use glint_bake_core::ndf_maps::surface::EvalSettings;
-use glint_bake_core::ndf_maps::transform::TransformRanges;
+use glint_bake_core::ndf_maps::bake::bake_maps;
+use glint_bake_core::ndf_maps::baked::Material;
+use glint_bake_core::ndf_maps::eval::EvalSettings;
+use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, StochasticOptions, TransformRanges};
+use glint_bake_core::ndf_maps::placement::place;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::quality::metrics::DiskGrid;
@@ -17,8 +17,8 @@ use hard_maps::{hard_maps, map};
 
 fn material(map: &NormalMap, roughness: f64, options: &PlacementOptions) -> Material {
     let options_of_maps = NdfMapsOptions { roughness, max_error: 0.02, ..NdfMapsOptions::default() };
-    let maps = bake::bake(map, &options_of_maps, &Silent).unwrap();
-    Material { placement: placement::bake(map, roughness, options).unwrap(), maps }
+    let maps = bake_maps(map, &options_of_maps, &Silent).unwrap();
+    Material { placement: place(map, roughness, options).unwrap(), maps }
 }
 
 /// Integral of a footprint's NDF over the disk; panics when a value is negative or not finite.
@@ -65,7 +65,7 @@ fn every_roughness_gives_normalised_tiles() {
     let map = map(8, 8, |i, j| [(i as f32 * 1.3).sin() * 0.4, (j as f32 * 0.9).cos() * 0.4]);
     for roughness in [1e-4, 1e-3, 0.05, 0.3, 1.0] {
         let options = NdfMapsOptions { roughness, max_error: 0.05, ..NdfMapsOptions::default() };
-        let baked = bake::bake(&map, &options, &Silent).unwrap();
+        let baked = bake_maps(&map, &options, &Silent).unwrap();
         assert!(baked.params.measured.energy < 1e-3, "σ_r {roughness}: {:?}", baked.params.measured);
         assert!(baked.params.measured.mean.is_finite());
         for tile in 0..baked.tiles.len() as u32 {
@@ -101,20 +101,20 @@ fn options_without_meaning_are_refused_with_their_name() {
     let map = map(8, 8, |_, _| [0.9, 0.0]);
     let refused = |roughness: f64, max_error: f64| {
         let options = NdfMapsOptions { roughness, max_error, ..NdfMapsOptions::default() };
-        bake::bake(&map, &options, &Silent).unwrap_err().to_string()
+        bake_maps(&map, &options, &Silent).unwrap_err().to_string()
     };
     assert!(refused(0.0, 0.01).contains("roughness"));
     assert!(refused(f64::NAN, 0.01).contains("roughness"));
     assert!(refused(0.02, 0.0).contains("error"));
     assert!(refused(0.02, f64::NAN).contains("error"));
     let wide = TransformRanges { stretch: (1.0, 1.5), ..TransformRanges::default() };
-    let error = placement::bake(&map, 0.02, &PlacementOptions::Tiled(wide)).unwrap_err();
+    let error = place(&map, 0.02, &PlacementOptions::Tiled(wide)).unwrap_err();
     assert!(matches!(&error, BakeError::BadOption(what) if what.contains("stretch")), "{error}");
 }
 
 #[test]
 fn a_large_map_is_refused_with_advice() {
     let map = map(256, 128, |_, _| [0.0, 0.0]);
-    let error = bake::bake(&map, &NdfMapsOptions::default(), &Silent).unwrap_err();
+    let error = bake_maps(&map, &NdfMapsOptions::default(), &Silent).unwrap_err();
     assert!(matches!(&error, BakeError::LimitExceeded(what) if what.contains("--crop")), "{error}");
 }

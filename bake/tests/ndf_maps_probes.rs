@@ -2,12 +2,13 @@
 
 use glam::DVec2;
 use glint_bake_core::footprint::Footprint;
-use glint_bake_core::ndf_maps::bake::{self, NdfMapsOptions};
-use glint_bake_core::ndf_maps::eval::Material;
-use glint_bake_core::ndf_maps::measure::footprint_errors;
-use glint_bake_core::ndf_maps::placement::{self, PlacementOptions, StochasticOptions};
+use glint_bake_core::ndf_maps::bake::bake_maps;
+use glint_bake_core::ndf_maps::baked::Material;
+use glint_bake_core::ndf_maps::eval::EvalSettings;
+use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, StochasticOptions};
+use glint_bake_core::ndf_maps::placement::place;
+use glint_bake_core::ndf_maps::quality::footprint_errors;
 use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
-use glint_bake_core::ndf_maps::surface::EvalSettings;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::quality::sweep::footprints;
@@ -32,8 +33,8 @@ fn material(map: &NormalMap) -> Material {
     let options = NdfMapsOptions { roughness: 0.03, max_error: 0.02, ..NdfMapsOptions::default() };
     let placement = PlacementOptions::Stochastic(StochasticOptions::default());
     Material {
-        placement: placement::bake(map, options.roughness, &placement).unwrap(),
-        maps: bake::bake(map, &options, &Silent).unwrap(),
+        placement: place(map, options.roughness, &placement).unwrap(),
+        maps: bake_maps(map, &options, &Silent).unwrap(),
     }
 }
 

@@ -11,7 +11,7 @@ use glint_bake_core::progress::Silent;
 use glint_bake_core::rng::{ItemRng, Purpose};
 use glint_bake_core::surface::quality::{Exact, Measured, seam_footprints};
 use glint_bake_core::surface::sections::{from_pack, surfaces, to_sections};
-use glint_bake_core::surface::{Surface, SurfaceSettings, bake};
+use glint_bake_core::surface::{Surface, SurfaceOptions, SurfaceSettings, bake};
 use glint_bake_core::synthesis::{SynthesisOptions, Target};
 use glint_formats::Wrap;
 use glint_formats::lobes::Filter;
@@ -44,8 +44,12 @@ fn lobes() -> LobesOptions {
     LobesOptions { footprints: 0, ..LobesOptions::default() }
 }
 
+fn baked_of(sample: &NormalMap, lobes: LobesOptions, synthesis: SynthesisOptions) -> Result<Surface, BakeError> {
+    bake(sample, &SurfaceOptions { lobes, synthesis }, &Silent)
+}
+
 fn baked(sample: &NormalMap, target: Target) -> Surface {
-    bake(sample, &lobes(), &synthesis(target), &Silent).unwrap()
+    baked_of(sample, lobes(), synthesis(target)).unwrap()
 }
 
 fn footprint(x: f64, y: f64, sigma: f64, anisotropy: f64, angle: f64) -> Footprint {
@@ -58,7 +62,7 @@ fn a_surface_is_a_sound_pack_and_read_back() {
     let maps = [waves(128, 112, Wrap::Repeat), waves(130, 128, Wrap::Repeat), waves(120, 133, Wrap::Clamp)];
     for (map, filter) in maps.iter().zip([Filter::Linear, Filter::Nearest, Filter::Linear]) {
         for target in [GRID, TILES] {
-            let surface = bake(map, &LobesOptions { filter, ..lobes() }, &synthesis(target), &Silent).unwrap();
+            let surface = baked_of(map, LobesOptions { filter, ..lobes() }, synthesis(target)).unwrap();
             let mut builder = PackBuilder::new();
             for section in to_sections("gold", &surface, Codec::Zstd) {
                 builder.push(section).unwrap();
@@ -80,7 +84,7 @@ fn the_same_bytes_on_any_number_of_threads() {
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let options = LobesOptions { footprints: 1, ..LobesOptions::default() };
-        pool.install(|| bake(&sample, &options, &synthesis(GRID), &Silent).unwrap())
+        pool.install(|| baked_of(&sample, options, synthesis(GRID)).unwrap())
     };
     let one = on(1);
     assert!(one == on(2) && one == on(7));
@@ -110,7 +114,7 @@ fn the_finest_level_is_the_assembled_map() {
     for (wrap, filter) in [(Wrap::Clamp, Filter::Linear), (Wrap::Repeat, Filter::Nearest)] {
         let sample = waves(128, 128, wrap);
         for target in [GRID, TILES] {
-            let surface = bake(&sample, &LobesOptions { filter, ..lobes() }, &synthesis(target), &Silent).unwrap();
+            let surface = baked_of(&sample, LobesOptions { filter, ..lobes() }, synthesis(target)).unwrap();
             let exact = Exact { surface: &surface, sample: &sample, roughness: 0.02, refinement: 1.0 };
             for sigma in [0.5, 1.0, 2.0] {
                 let places = seam_footprints(&surface, sigma, 8, 3, false);
@@ -210,15 +214,15 @@ fn density_is_continuous_in_the_footprints_size() {
 #[test]
 fn what_does_not_fit_is_refused() {
     let sample = waves(128, 128, Wrap::Clamp);
-    let refused = |lobes: &LobesOptions, synthesis: &SynthesisOptions| match bake(&sample, lobes, synthesis, &Silent) {
+    let refused = |lobes: LobesOptions, synthesis: SynthesisOptions| match baked_of(&sample, lobes, synthesis) {
         Err(error) => error.to_string(),
-        Ok(_) => panic!("{lobes:?} {synthesis:?} was taken"),
+        Ok(baked) => panic!("{:?} was taken", baked.synthesis.params),
     };
-    assert!(refused(&LobesOptions { cell_texels: 32, ..lobes() }, &synthesis(GRID)).contains("--cell"));
-    assert!(refused(&LobesOptions { seeds: 3, ..lobes() }, &synthesis(GRID)).contains("--seeds"));
+    assert!(refused(LobesOptions { cell_texels: 32, ..lobes() }, synthesis(GRID)).contains("cell: "));
+    assert!(refused(LobesOptions { seeds: 3, ..lobes() }, synthesis(GRID)).contains("seeds: "));
     let odd = SynthesisOptions { alignment: 12, patch: 60, ..synthesis(GRID) };
-    assert!(refused(&lobes(), &odd).contains("--alignment"));
-    assert!(refused(&lobes(), &SynthesisOptions { patch: 256, ..synthesis(GRID) }).contains("--patch"));
+    assert!(refused(lobes(), odd).contains("alignment: "));
+    assert!(refused(lobes(), SynthesisOptions { patch: 256, ..synthesis(GRID) }).contains("patch"));
 }
 
 #[test]

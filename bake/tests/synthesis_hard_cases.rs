@@ -4,7 +4,7 @@ use glint_bake_core::error::BakeError;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::rng::{ItemRng, Purpose};
-use glint_bake_core::synthesis::measure::{feature_ends, repetition, seam_ratio, whole_share};
+use glint_bake_core::synthesis::quality::{feature_ends, repetition, seam_ratio, whole_share};
 use glint_bake_core::synthesis::sections::{from_pack, surfaces, to_sections};
 use glint_bake_core::synthesis::{Synthesis, SynthesisOptions, Target, assemble, bake};
 use glint_formats::Wrap;
@@ -113,7 +113,7 @@ fn lines_that_no_patch_continues_are_counted_as_ends() {
 #[test]
 fn samples_too_small_are_refused_and_just_large_enough_ones_work() {
     let refused = |map: &NormalMap, options: &SynthesisOptions| match bake(map, options, &Silent) {
-        Err(BakeError::BadInput(message)) => assert!(message.contains("--patch"), "{message}"),
+        Err(BakeError::BadInput(message)) => assert!(message.contains("patch"), "{message}"),
         other => panic!("{other:?}"),
     };
     refused(&flat(1, 1, Wrap::Repeat), &patches(64, 64));
@@ -136,9 +136,9 @@ fn patches_of_a_sample_that_does_not_repeat_never_cross_its_edge() {
         let surface = baked(&map, &SynthesisOptions { patch, alignment: 1, ..options(target) });
         let reach = |offset: u16| u32::from(offset) - 4..u32::from(offset) + patch;
         for (x, y) in (0..180).flat_map(|y| (0..200).map(move |x| (x, y))) {
-            let source = surface.source(x, y);
-            let [ox, oy] = surface.offsets[source.patch as usize];
-            assert!(reach(ox).contains(&source.x) && reach(oy).contains(&source.y), "({x}, {y})");
+            let (sx, sy) = surface.source_texel(x, y);
+            let [ox, oy] = surface.offsets[surface.place(x, y).patch_index as usize];
+            assert!(reach(ox).contains(&sx) && reach(oy).contains(&sy), "({x}, {y})");
         }
     }
 }
@@ -157,7 +157,7 @@ fn whole_blocks_show_a_block_of_the_sample_and_nominal_ones_most_of_it() {
         for (log2_size, count) in whole.iter_mut().enumerate() {
             let size = 8 << log2_size;
             for (bx, by) in (-9..9).flat_map(|by| (-9..9).map(move |bx| (bx, by))) {
-                let block = surface.source_block(bx, by, log2_size as u32);
+                let block = surface.block_source(bx * size, by * size, size, size as u32);
                 let nominal = surface.nominal_block(bx * size, by * size, size, size as u32);
                 let texels = (0..size).flat_map(|y| (0..size).map(move |x| (x, y)));
                 let matching = |(sx, sy): (u32, u32)| {
@@ -181,7 +181,7 @@ fn whole_blocks_show_a_block_of_the_sample_and_nominal_ones_most_of_it() {
         }
         assert!(whole[0] > 100, "{whole:?}");
         coarse += whole[1];
-        assert_eq!(surface.source_block(0, 0, 30), None);
+        assert_eq!(surface.block_source(0, 0, 8 << 16, 8 << 16), None);
     }
     assert!(coarse > 10, "{coarse}");
 }
@@ -253,18 +253,18 @@ fn options_without_a_meaning_are_named() {
     let map = noise(64, 64, Wrap::Repeat);
     type Edit = fn(&mut SynthesisOptions);
     let edits: [(Edit, &str); 12] = [
-        (|o| o.patch = 3, "--patch"),
-        (|o| o.patch = 2048, "--patch"),
-        (|o| o.overlap = 9, "--overlap"),
-        (|o| o.alignment = 0, "--alignment"),
-        (|o| o.alignment = 5, "--alignment"),
-        (|o| o.alpha = f64::NAN, "--alpha"),
-        (|o| o.error_tolerance = f64::NAN, "--error-tolerance"),
+        (|o| o.patch = 3, "patch"),
+        (|o| o.patch = 2048, "patch"),
+        (|o| o.overlap = 9, "overlap"),
+        (|o| o.alignment = 0, "alignment"),
+        (|o| o.alignment = 5, "alignment"),
+        (|o| o.alpha = f64::NAN, "alpha"),
+        (|o| o.error_tolerance = f64::NAN, "error_tolerance"),
         (|o| o.max_candidates = 0, "candidates"),
-        (|o| o.target = Target::Patches { width: 0, height: 5 }, "--synthesize"),
+        (|o| o.target = Target::Patches { width: 0, height: 5 }, "synthesize"),
         (|o| o.target = Target::Unbounded { colours: 5, variants: 1 }, "colours"),
         (|o| o.target = Target::Unbounded { colours: 2, variants: 0 }, "variants"),
-        (|o| o.target = UNBOUNDED, "--patch"),
+        (|o| o.target = UNBOUNDED, "patch"),
     ];
     for (edit, named) in edits {
         let mut options = patches(64, 64);

@@ -45,7 +45,7 @@ PARAMETERS = {
         marginals="u32", levels="u32", entries="u32", alpha_dict="f64", lobe_std="f64", domain="f64", seed="u64",
         measured=dict(normalisation="f64", mean_l1_first_level="f64", ks_last_level="f64")),
     "ENPP": dict(
-        face_size="u32", kernel=("enum", ["Ndf", "GgxNl"]), storage=("enum", ["F16", "F32", "Unorm16"]),
+        face_size="u32", kernel=("enum", ["Ndf", "GgxNl"]),
         roughness=("list", "f64"), radiance_scale="f64", levels=("list", "f64"),
         level_choice=("enum", ["Optimal", "LogUniform"]), coloured="bool", albedo_size="u32", source_width="u32",
         source_height="u32", negative_pixels="u64", mean_radiance=("array", 3, "f64"), max_error="f64",
@@ -66,7 +66,8 @@ PARAMETERS = {
         measured=dict(seam_ratio="f64", distinct_offsets="u32")),
 }
 KINDS = set(PARAMETERS) | set(
-    "NMTI NMDE NMNO PLPL PLNO PLCL SDTB ENRA ENIN ENCO ENAL ALNM ALRO ALLI ALLT LOUB LOBE LONM SYPO SYSE".split())
+    "NMTI NMDE NMNO PLPL PLNO PLCL SDUB SDTB ENUB ENRA ENIN ENCO ENAL ALUB ALNM ALRO ALLI ALLT LOUB LOBE LONM SYPO "
+    "SYSE".split())
 TEXEL_BYTES = {9: 1, 10: 1, 13: 1, 16: 2, 17: 2, 37: 4, 38: 4, 41: 4, 70: 2, 71: 2, 74: 2, 76: 2, 77: 4, 78: 4, 81: 4,
                83: 4, 91: 8, 92: 8, 95: 8, 97: 8, 98: 4, 100: 4, 101: 8, 103: 8, 107: 16, 109: 16, 122: 4, 123: 4}
 

@@ -24,6 +24,8 @@ pub enum Binding {
 pub enum View {
     /// `texture_2d<f32>`, read through a sampler or by loads.
     Float2d,
+    /// `texture_2d_array<f32>`, read by loads: a cube's faces are layers, face by face of the first layer, then of the next.
+    Float2dArray,
     /// `texture_2d<u32>`, read by loads.
     Uint2d,
     /// `texture_cube<f32>`, read through a sampler.
@@ -47,3 +49,5 @@ pub const BUFFER_GRANULARITY: usize = 16;
 /// Columns of a table that is stored as a texture of one or four 32-bit numbers: element i is at column i mod 1024 of row
 /// i / 1024, and the last row ends with zeros.
 pub const TABLE_WIDTH: u32 = 1024;
+/// Bytes of a storage buffer that every GPU binds, at most.
+pub const MAX_BINDING_BYTES: u64 = 128 << 20;

@@ -30,7 +30,10 @@ fn sections_come_back() {
     assert_eq!(&*read(TILES, ROCK), bytemuck::cast_slice::<_, u8>(&tiles()));
     assert_eq!(&*read(DENSITY, ROCK), bytemuck::cast_slice::<_, u8>(&density()));
     assert_eq!(params::decode::<DictionaryParams>(&read(dictionary::PARAMS, "lobes")).unwrap(), dictionary_params());
-    assert_eq!(&*read(dictionary::TABLE, "lobes"), bytemuck::cast_slice::<_, u8>(&dictionary_table()));
+    assert_eq!(
+        &*read(dictionary::TABLE, "lobes"),
+        bytemuck::cast_slice::<_, u8>(&dictionary_pairs(&dictionary_table()))
+    );
     assert!(pack.find(LAYERS, ROCK).is_none());
 }
 

@@ -8,6 +8,8 @@ use std::path::PathBuf;
 #[command(next_help_heading = "Run")]
 pub struct RunFlags {
     /// Threads to use [default: one a core]
+    ///
+    /// The pack is the same for any number.
     #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,
     /// Most bytes to hold for one map, or for the finished pack, as in 512M

@@ -2,7 +2,7 @@
 
 use crate::input::Crop;
 use clap::ValueEnum;
-use glint_bake_core::ndf_maps::transform::TransformRanges;
+use glint_bake_core::ndf_maps::options::TransformRanges;
 
 /// The name of a value, as a flag takes it.
 pub fn name_of(value: &impl ValueEnum) -> String {

@@ -1,24 +1,27 @@
-//! `glint-bake generate`: manual pages and shell completions, from the one definition of the flags.
+//! `glint-bake generate`: manual pages, shell completions and tables of flags, from the one definition of the flags.
 
 use crate::cli::Terminal;
+use crate::commands::flag_tables;
 use crate::exit::{Exit, Failure};
 use crate::output;
 use clap::ValueEnum;
 use clap_complete::Shell;
 use clap_mangen::Man;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Lines that `--help` shows and a test runs.
 const EXAMPLES: &str = "\
 Examples:
   glint-bake generate man -o man
   glint-bake generate bash -o completions
-  glint-bake generate zsh";
+  glint-bake generate zsh
+  glint-bake generate markdown -o docs";
 
-/// Write manual pages or shell completions of both programs
+/// Write manual pages, shell completions or tables of flags of all programs
 ///
 /// With -o one file a page or a program, named as the shell expects: glint-bake.1, glint-bake.bash, _glint-bake,
-/// glint-bake.fish, _glint-bake.ps1. Without, all of it to standard output, for the shell to source.
+/// glint-bake.fish, _glint-bake.ps1. Without, all of it to standard output, for the shell to source. Tables go to CLI.md: of
+/// one that is there already only the parts between <!-- flags of COMMAND --> and <!-- end of flags --> are written anew.
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
@@ -44,6 +47,8 @@ pub enum What {
     /// Completions for PowerShell
     #[value(name = "powershell")]
     PowerShell,
+    /// Tables of flags in Markdown
+    Markdown,
 }
 
 /// A file to be.
@@ -60,6 +65,7 @@ pub fn run(args: &Args, programs: [clap::Command; 3], terminal: Terminal) -> Res
         What::Zsh => completions(programs, Shell::Zsh),
         What::Fish => completions(programs, Shell::Fish),
         What::PowerShell => completions(programs, Shell::PowerShell),
+        What::Markdown => vec![tables(&programs, args.output.as_deref())?],
     };
     let Some(folder) = &args.output else {
         let text: Vec<u8> = documents.into_iter().flat_map(|document| document.bytes).collect();
@@ -83,6 +89,19 @@ fn completions(programs: [clap::Command; 3], shell: Shell) -> Vec<Document> {
         Document { name: shell.file_name(&name), bytes }
     };
     programs.map(document).into()
+}
+
+/// Tables of flags: in the page that is there already, or a page of nothing else.
+fn tables(programs: &[clap::Command], folder: Option<&Path>) -> Result<Document, Failure> {
+    let path = folder.map(|folder| folder.join(flag_tables::FILE)).filter(|path| path.exists());
+    let text = match path {
+        Some(path) => {
+            let page = std::fs::read_to_string(&path).map_err(|e| Failure::io(&path, "cannot be read", &e))?;
+            flag_tables::renew(&page, programs)?
+        }
+        None => flag_tables::page(programs),
+    };
+    Ok(Document { name: flag_tables::FILE.to_owned(), bytes: text.into_bytes() })
 }
 
 /// A page a program and a page a subcommand.

@@ -24,6 +24,8 @@ pub struct Args {
     #[arg(long, value_name = "A", conflicts_with_all = ["verify", "plot", "extract"])]
     pub diff: Option<PathBuf>,
     /// Write the bytes of a section, decompressed, to the file of --output: its kind, as in ENRA, or kind and name
+    ///
+    /// The name is needed where there are several of the kind, as in NMDE:rock.
     #[arg(long, value_name = "SECTION[:NAME]", requires = "output", conflicts_with_all = ["json", "verify", "plot"])]
     pub extract: Option<String>,
     /// File for --extract

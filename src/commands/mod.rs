@@ -5,6 +5,7 @@ mod build;
 
 mod demo;
 mod export;
+pub mod flag_tables;
 mod generate;
 mod info;
 mod ninja;

@@ -24,6 +24,8 @@ pub struct Args {
     #[arg(value_name = "PROJECT", default_value = "glint.toml")]
     pub project: PathBuf,
     /// Measure the packs that were built for the scene, at other places than the plan was made at
+    ///
+    /// The exit code is 4 when one exceeds its error.
     #[arg(long)]
     pub measure: bool,
     /// Threads to use; the plan is the same for any number [default: one a core]

@@ -8,7 +8,7 @@ use crate::output;
 use crate::preview::{Camera, Layer, Object, Scene, Shape, Surface, render};
 use clap::ValueEnum;
 use glam::Vec3;
-use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::sections;
 use glint_formats::Limits;
 use glint_formats::ndf_maps::LayeredMaterial;

@@ -1,13 +1,11 @@
-//! What the programs ask of a method: a [`Method`] by its name, and a [`Bake`] once its flags are known.
-//!
-//! Each method answers in a folder beside this file. What most methods leave out has a default here.
+//! What the programs ask of a [`Method`]. Each answers in a folder beside this file; what most leave out has a default here.
 
+use super::bake::Bake;
 use super::contents::{Field, ParameterKind};
-use super::planning::{Candidates, Planning, Request};
+use super::planning::Planning;
 use super::plots::WritePlot;
-use crate::cli::{OptionList, Terminal};
-use crate::delivery::Delivery;
-use crate::exit::{Exit, Failure};
+use crate::cli::OptionList;
+use crate::exit::Failure;
 use crate::pack;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 use glint_formats::Pack;
@@ -56,47 +54,6 @@ impl Debug for dyn Method {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
     }
-}
-
-/// A bake whose flags are known.
-pub trait Bake: Debug + Send + Sync {
-    /// Where the pack goes, what it depends on, and what is written beside it.
-    fn delivery(&self) -> Delivery<'_>;
-
-    /// Checks everything, then bakes. `None` when only a dry run was asked for, which has said what would be done.
-    ///
-    /// # Errors
-    /// Usage, before any work; what is wrong with an input; an error that was asked for and missed.
-    fn bake(&self, terminal: Terminal) -> Result<Option<FinishedPack>, Failure>;
-
-    /// Drafts for a scene, measured at what the scene sees; only of methods that say what they are planned for.
-    ///
-    /// # Errors
-    /// What stops a draft; limit exceeded, when the inputs are beyond what the method can bake.
-    fn candidates(&self, _request: &Request<'_>) -> Result<Candidates, Failure> {
-        Err(unplanned())
-    }
-
-    /// Error of a finished pack at what a scene sees, at other places than those that drafts are measured at.
-    ///
-    /// # Errors
-    /// What is wrong with an input or with the pack.
-    fn measure(&self, _pack: &Pack, _request: &Request<'_>) -> Result<f64, Failure> {
-        Err(unplanned())
-    }
-}
-
-/// A pack that was baked and is not written yet.
-pub struct FinishedPack {
-    /// The file's bytes.
-    pub bytes: Vec<u8>,
-    /// What would make it smaller, for a pack beyond its limit: follows "raise --max-memory or".
-    pub smaller: &'static str,
-}
-
-/// The failure of a bake that is asked for a plan that its method does not make.
-pub fn unplanned() -> Failure {
-    Failure::new(Exit::Unexpected, "a scene does not plan this method; please report this")
 }
 
 /// The subcommand of a method with the flags `A`.

@@ -4,6 +4,7 @@
 //! to [`method::Method`].
 
 mod area_light;
+pub mod bake;
 pub mod contents;
 mod dictionary;
 mod environment;
@@ -13,11 +14,12 @@ pub mod ndf_maps;
 pub mod planning;
 pub mod plots;
 
+use bake::Bake;
 use clap::error::ErrorKind;
 use clap::{ArgMatches, Command, FromArgMatches, Subcommand};
 use contents::{Contents, Field, ParameterKind};
 use glint_formats::{FourCc, Pack};
-use method::{Bake, Method};
+use method::Method;
 use std::sync::Arc;
 
 /// Every method, in the order that help and reports have.

@@ -1,11 +1,9 @@
-//! Drafts for a scene: what a method may choose, what it chose, and how good that is at what the scene sees.
+//! What a scene asks of a method, and what a method may choose for it.
 
-use super::method::{Bake, unplanned};
 use crate::cli::OptionList;
-use crate::exit::Failure;
+use crate::exit::{Exit, Failure};
 use crate::scene::{EnvironmentView, Lights, Scene, Subject, SubjectKind, SurfaceView};
 use std::path::Path;
-use std::sync::Arc;
 
 /// Part of an error that a plan uses up: it is measured at some places, and holds for others.
 pub const USED: f64 = 0.9;
@@ -35,14 +33,14 @@ pub struct Request<'a> {
     pub budget: f64,
     /// Where the pack will lie.
     pub output: &'a Path,
-    /// Names of the flags that the project gives itself; they are not for the plan to choose.
-    pub given: &'a [String],
+    /// Names of the flags that the project fixes; they are not for the plan to choose.
+    pub fixed: &'a [String],
 }
 
 impl<'a> Request<'a> {
-    /// Whether the project gives a flag itself.
-    pub fn gives(&self, flag: &str) -> bool {
-        self.given.iter().any(|given| given == flag)
+    /// Whether the project fixes a flag.
+    pub fn fixes(&self, flag: &str) -> bool {
+        self.fixed.iter().any(|fixed| fixed == flag)
     }
 
     /// The surface that is seen.
@@ -69,7 +67,7 @@ impl<'a> Request<'a> {
 
     /// The project's flags, of which some may be chosen.
     pub fn choice<A>(&self, args: A) -> Choice<'a, A> {
-        Choice { args, options: OptionList::default(), given: self.given }
+        Choice { args, options: OptionList::default(), fixed: self.fixed }
     }
 }
 
@@ -79,60 +77,23 @@ pub struct Choice<'a, A> {
     pub args: A,
     /// Those that were chosen, as they are typed.
     pub options: OptionList,
-    given: &'a [String],
+    fixed: &'a [String],
 }
 
 impl<A> Choice<'_, A> {
-    /// Chooses the value of a flag, unless the project gives it itself. `text` is the value as it is typed, and `set`
+    /// Chooses the value of a flag, unless the project fixes it. `text` is the value as it is typed, and `set`
     /// puts it into the flags.
     pub fn choose(&mut self, flag: &str, text: impl ToString, set: impl FnOnce(&mut A)) {
-        if !self.given.iter().any(|given| given == flag) {
+        if !self.fixed.iter().any(|fixed| fixed == flag) {
             set(&mut self.args);
             self.options.push(flag, text);
         }
     }
 }
 
-/// A draft that was made and measured.
-#[derive(Clone, Debug)]
-pub struct Candidate {
-    /// The bake that makes it.
-    pub bake: Arc<dyn Bake>,
-    /// Flags that were chosen, as they are typed; one that takes no value has an empty one.
-    pub options: OptionList,
-    /// Bytes of the pack.
-    pub bytes: u64,
-    /// Error at what the scene sees.
-    pub error: f64,
-}
-
-/// All drafts of one pack.
-#[derive(Clone, Debug)]
-pub struct Candidates {
-    /// How it is seen, in words.
-    pub view: String,
-    /// What no look-up of the scene reads, and so is left out.
-    pub dropped: Vec<String>,
-    /// The drafts.
-    pub drafts: Vec<Candidate>,
-}
-
-impl Candidates {
-    /// None yet.
-    pub fn new(view: String) -> Candidates {
-        Candidates { view, dropped: Vec::new(), drafts: Vec::new() }
-    }
-
-    /// Whether there is a draft with these choices.
-    pub fn has(&self, options: &OptionList) -> bool {
-        self.drafts.iter().any(|draft| draft.options == *options)
-    }
-
-    /// Adds a draft.
-    pub fn push<A: Bake + 'static>(&mut self, choice: Choice<'_, A>, bytes: u64, error: f64) {
-        let Choice { args, options, .. } = choice;
-        self.drafts.push(Candidate { bake: Arc::new(args), options, bytes, error });
-    }
+/// The failure of a bake that is asked for a plan that its method does not make.
+pub fn unplanned() -> Failure {
+    Failure::new(Exit::Unexpected, "a scene does not plan this method; please report this")
 }
 
 /// `count` sizes from one end of a range to the other, evenly by their logarithm; one for a range that is a point.

@@ -1,6 +1,7 @@
 //! The choice between drafts: of every pack the smallest within its error; within the bytes of all, the nearest to that.
 
-use crate::methods::planning::{Candidate, USED};
+use crate::methods::bake::Candidate;
+use crate::methods::planning::USED;
 
 /// A pack to plan, with what was measured of its drafts.
 #[derive(Clone, Debug)]
@@ -112,7 +113,7 @@ pub(super) mod tests {
     use crate::cli::{OptionList, RunFlags, Terminal};
     use crate::delivery::Delivery;
     use crate::exit::Failure;
-    use crate::methods::method::{Bake, FinishedPack};
+    use crate::methods::bake::{Bake, FinishedPack};
     use clap::Parser;
     use std::path::Path;
     use std::sync::Arc;

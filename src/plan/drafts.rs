@@ -3,8 +3,9 @@
 use super::choose::{PackDrafts, Plan};
 use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
-use crate::methods::method::{Bake, Method};
-use crate::methods::planning::{Candidate, Planning, Request};
+use crate::methods::bake::{Bake, Candidate};
+use crate::methods::method::Method;
+use crate::methods::planning::{Planning, Request};
 use crate::scene::{Scene, Subject};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -27,8 +28,8 @@ pub struct Alternative {
     pub method: &'static dyn Method,
     /// The bake with the project's options and defaults for all others.
     pub bake: Arc<dyn Bake>,
-    /// Names of the flags that the project gives itself.
-    pub given: Vec<String>,
+    /// Names of the flags that the project fixes.
+    pub fixed: Vec<String>,
 }
 
 /// The plan of a scene. `place` says where the pack of a name will lie.
@@ -102,7 +103,7 @@ impl Planner<'_> {
             subject: &planned.subject,
             budget,
             output: &output,
-            given: &alternative.given,
+            fixed: &alternative.fixed,
         })?;
         self.packs.push(PackDrafts {
             name,

@@ -1,8 +1,8 @@
 //! How good a pack of a scene is once it is built: read back, and measured at other places than the plan's.
 
 use crate::exit::{Exit, Failure};
-use crate::methods::method::{Bake, unplanned};
-use crate::methods::planning::{Planning, Request};
+use crate::methods::bake::Bake;
+use crate::methods::planning::{Planning, Request, unplanned};
 use crate::scene::{Scene, Subject};
 use glint_formats::{Limits, Pack};
 use std::path::Path;
@@ -34,7 +34,7 @@ pub fn measure(
     let planning = planning.ok_or_else(unplanned)?;
     let pack = open(path)?;
     let budget = subject.error().unwrap_or(scene.error);
-    let error = bake.measure(&pack, &Request { scene, subject, budget, output: path, given: &[] })?;
+    let error = bake.measure(&pack, &Request { scene, subject, budget, output: path, fixed: &[] })?;
     let bytes = std::fs::metadata(path).map_or(0, |meta| meta.len());
     Ok(Measured { measure: planning.measure, error, budget, bytes })
 }

@@ -6,8 +6,8 @@
 
 use glam::{Vec2, Vec3};
 use glint_bake_core::footprint::Footprint;
-use glint_bake_core::ndf_maps::eval::{Material, matrix};
-use glint_bake_core::ndf_maps::surface::EvalSettings;
+use glint_bake_core::ndf_maps::baked::Material;
+use glint_bake_core::ndf_maps::eval::{EvalSettings, matrix};
 use glint_formats::ndf_maps::TransformRecord;
 
 /// Tiles may be four times as large, against the footprint, as where accuracy is measured: an eye sees no difference,

@@ -6,7 +6,7 @@
 use super::entry::Entry;
 use super::model::{CommandLine, Target};
 use crate::cli::{RunFlags, typed};
-use crate::methods::method::Bake;
+use crate::methods::bake::Bake;
 use crate::methods::{MethodCommand, find};
 use clap::builder::ValueParser;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
@@ -73,8 +73,8 @@ impl Methods {
         let mut line = CommandLine::default();
         for option in options {
             let key = option.entry.key;
-            let wrong = |why: String| OptionError { key: Some(key.to_owned()), why };
-            for value in self.values(method, option.entry, folder).map_err(wrong)? {
+            let refuse = |why: String| OptionError { key: Some(key.to_owned()), why };
+            for value in self.values(method, option.entry, folder).map_err(refuse)? {
                 match (key, value) {
                     (INPUT, Value::Text(text)) => line.inputs.push(text),
                     (_, Value::Text(text)) => line.flags.push((key.to_owned(), typed(key, &text))),

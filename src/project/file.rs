@@ -206,7 +206,7 @@ impl<'a> Reader<'a> {
             bases.push(base);
         }
         let alternative =
-            |base: &Target| Alternative { method: base.method, bake: base.bake.clone(), given: base.line.given() };
+            |base: &Target| Alternative { method: base.method, bake: base.bake.clone(), fixed: base.line.keys() };
         let alternatives = bases.iter().map(alternative).collect();
         let planned = Planned { name: entry.key.to_owned(), subject, alternatives };
         self.project.planned.push(PlannedTable { planned, bases });

@@ -2,7 +2,8 @@
 
 use crate::cli::{OptionList, typed};
 use crate::exit::Failure;
-use crate::methods::method::{Bake, Method};
+use crate::methods::bake::Bake;
+use crate::methods::method::Method;
 use crate::plan::Planned;
 use crate::scene::Scene;
 use std::path::{Path, PathBuf};
@@ -46,7 +47,7 @@ pub struct CommandLine {
 
 impl CommandLine {
     /// Names of the flags.
-    pub fn given(&self) -> Vec<String> {
+    pub fn keys(&self) -> Vec<String> {
         self.flags.iter().map(|(key, _)| key.clone()).collect()
     }
 

@@ -20,37 +20,37 @@ pub fn scene<'a>(whole: Entry<'a>, entries: &[Entry<'a>]) -> Result<Scene, KeyEr
     let mut scene =
         Scene { image: (1920, 1080), field_of_view: 40.0, lights: Lights::default(), error: 0.1, bytes: None };
     for entry in entries {
-        let wrong = |why: &'static str| (*entry, why);
+        let refuse = |why: &'static str| (*entry, why);
         match entry.key {
             "image" => {
                 let size = entry.value.as_str().and_then(|text| values::size(text).ok());
-                scene.image = size.ok_or(wrong("expected WxH pixels, as in \"1920x1080\""))?;
+                scene.image = size.ok_or(refuse("expected WxH pixels, as in \"1920x1080\""))?;
             }
             "field-of-view" => {
                 scene.field_of_view = number(entry.value)
                     .filter(|angle| (1.0..=170.0).contains(angle))
-                    .ok_or(wrong("expected the vertical angle in degrees, 1 to 170"))?;
+                    .ok_or(refuse("expected the vertical angle in degrees, 1 to 170"))?;
             }
             "lights" => {
-                for light in entry.value.as_array().ok_or(wrong(LIGHTS))?.iter() {
+                for light in entry.value.as_array().ok_or(refuse(LIGHTS))?.iter() {
                     match light.get_ref().as_str() {
                         Some("point" | "directional") => scene.lights.point = true,
                         Some("rectangle") => scene.lights.rectangle = true,
                         Some("environment") => scene.lights.environment = true,
-                        _ => return Err(wrong(LIGHTS)),
+                        _ => return Err(refuse(LIGHTS)),
                     }
                 }
             }
-            "error" => scene.error = error(entry.value).ok_or(wrong(ERROR))?,
+            "error" => scene.error = error(entry.value).ok_or(refuse(ERROR))?,
             "bytes" => {
                 let text = match entry.value {
                     DeValue::Integer(count) => Some(count.as_str()),
                     value => value.as_str(),
                 };
                 let bytes = text.and_then(|text| values::bytes(text).ok());
-                scene.bytes = Some(bytes.ok_or(wrong("expected bytes, as in \"2M\""))?);
+                scene.bytes = Some(bytes.ok_or(refuse("expected bytes, as in \"2M\""))?);
             }
-            _ => return Err(wrong("expected image, field-of-view, lights, error or bytes")),
+            _ => return Err(refuse("expected image, field-of-view, lights, error or bytes")),
         }
     }
     if scene.lights == Lights::default() {
@@ -71,18 +71,18 @@ pub fn surface_view<'a>(whole: Entry<'a>, entries: &[Entry<'a>]) -> Result<Optio
     let (mut distance, mut density, mut tilt, mut own) = (None, None, 60.0, None);
     let mut said = false;
     for entry in entries.iter().filter(|entry| SURFACE_KEYS.contains(&entry.key)) {
-        let wrong = |why: &'static str| (*entry, why);
+        let refuse = |why: &'static str| (*entry, why);
         said = true;
-        let positive = || number(entry.value).filter(|v| *v > 0.0).ok_or(wrong("expected a number above 0"));
+        let positive = || number(entry.value).filter(|v| *v > 0.0).ok_or(refuse("expected a number above 0"));
         match entry.key {
-            "distance" => distance = Some(range(entry.value).ok_or(wrong(RANGE))?),
+            "distance" => distance = Some(range(entry.value).ok_or(refuse(RANGE))?),
             "texels-per-metre" => density = Some(Density::Texels(positive()?)),
             "uv-per-metre" => density = Some(Density::Uv(positive()?)),
             "tilt" => {
                 let angle = number(entry.value).filter(|angle| (0.0..89.9).contains(angle));
-                tilt = angle.ok_or(wrong("expected degrees, 0 to 89"))?;
+                tilt = angle.ok_or(refuse("expected degrees, 0 to 89"))?;
             }
-            _ => own = Some(error(entry.value).ok_or(wrong(ERROR))?),
+            _ => own = Some(error(entry.value).ok_or(refuse(ERROR))?),
         }
     }
     match (said, distance, density) {
@@ -100,14 +100,14 @@ pub fn surface_view<'a>(whole: Entry<'a>, entries: &[Entry<'a>]) -> Result<Optio
 pub fn environment_view<'a>(whole: Entry<'a>, entries: &[Entry<'a>]) -> Result<Option<EnvironmentView>, KeyError<'a>> {
     let (mut alpha, mut own, mut said) = (None, None, false);
     for entry in entries.iter().filter(|entry| ENVIRONMENT_KEYS.contains(&entry.key)) {
-        let wrong = |why: &'static str| (*entry, why);
+        let refuse = |why: &'static str| (*entry, why);
         said = true;
         match entry.key {
             "alpha" => {
                 let found = range(entry.value).filter(|(_, high)| *high <= 1.0);
-                alpha = Some(found.ok_or(wrong("expected [LEAST, GREATEST] roughness, above 0 and up to 1"))?);
+                alpha = Some(found.ok_or(refuse("expected [LEAST, GREATEST] roughness, above 0 and up to 1"))?);
             }
-            _ => own = Some(error(entry.value).ok_or(wrong(ERROR))?),
+            _ => own = Some(error(entry.value).ok_or(refuse(ERROR))?),
         }
     }
     match (said, alpha) {

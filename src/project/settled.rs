@@ -5,7 +5,7 @@ use super::model::{Project, Target};
 use super::stamp::Stamp;
 use crate::cli::{OptionList, Terminal, git_hash};
 use crate::exit::{Exit, Failure};
-use crate::methods::method::Bake;
+use crate::methods::bake::Bake;
 use crate::output;
 use crate::plan::{self, Measured, Plan, Planned};
 use serde::{Deserialize, Serialize};

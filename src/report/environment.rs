@@ -9,12 +9,12 @@ use crate::exit::Failure;
 use crate::plot::{Axis, Colour, Figure, Panel, Series};
 use glint_bake_core::environment::cube::{face_of, texel_direction, texel_solid_angle_sr};
 use glint_bake_core::environment::image::luminance;
-use glint_bake_core::environment::levels::{ROUGHNESSES, Seen, even_directions, log_uniform, optimal};
+use glint_bake_core::environment::levels::{ROUGHNESSES, RadianceHistogram, even_directions, log_uniform, optimal};
 use glint_bake_core::environment::quality::{Compared, compare, error_of};
 use glint_bake_core::environment::reference::{filtered, second_moments};
 use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, LevelCount, bake};
 use glint_bake_core::progress::Silent;
-use glint_formats::environment::{Kernel, Storage};
+use glint_formats::environment::Kernel;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -70,8 +70,7 @@ pub fn measure(settings: &Settings) -> Result<Document, Failure> {
     document.table(&tables.filters);
     document.heading(2, "Mips");
     document.paragraph(
-        "`--max-error 0.005`, each mip: RMSE (worst texel), stored as f32 and as f16, and cmgen's at 1024 samples. What f16 adds \
-         is rounding. Mip 0 is compared with means over texels that are exact along 512 lines of each.",
+        "`--max-error 0.005`, each mip: RMSE (worst texel), ours and cmgen's at 1024 samples. Mip 0 is compared with means over texels that are exact along 512 lines of each.",
     );
     document.table(&tables.mips);
     document.heading(2, "Second moment of what a facet reflects");
@@ -112,19 +111,18 @@ impl Tables {
             filters: Table::new(2, "image | setting | CPU s | RMSE | worst texel | energy"),
             mips: Table::new(
                 2,
-                "image | storage | 0: α 0 | 1: .004 | 2: .018 | 3: .044 | 4: .086 | 5: .15 | 6: .25 | 7: .42 | 8: 1",
+                "image | filter | 0: α 0 | 1: .004 | 2: .018 | 3: .044 | 4: .086 | 5: .15 | 6: .25 | 7: .42 | 8: 1",
             ),
             moments: Table::new(2, "image | levels | K = 1 | 2 | 4 | 6 | 8 | 16"),
         }
     }
 }
 
-fn options(levels: u32, storage: Storage, max_error: f64) -> EnvironmentOptions {
+fn options(levels: u32, max_error: f64) -> EnvironmentOptions {
     EnvironmentOptions {
         min_face_size: 1,
         levels: LevelCount::Exactly(levels),
         kernel: Kernel::GgxNl,
-        storage,
         max_error,
         measured_texels: 0,
         ..EnvironmentOptions::default()
@@ -161,14 +159,14 @@ fn filter_rows(
     tables: &mut Tables,
     points: &mut Vec<Point>,
 ) -> Result<(), Failure> {
-    let baked = |levels, storage, max_error| -> Result<(Environment, f64), Failure> {
+    let baked = |levels, max_error| -> Result<(Environment, f64), Failure> {
         let begin = cpu_seconds();
-        let environment = bake(image, &options(levels, storage, max_error), &Silent)?;
+        let environment = bake(image, &options(levels, max_error), &Silent)?;
         Ok((environment, cpu_seconds() - begin))
     };
-    let (exact, _) = baked(1, Storage::F32, 0.005)?;
+    let (chosen, _) = baked(1, 0.005)?;
     let texels = settings.pick(TEXELS, 4);
-    let compared: Vec<Vec<Compared>> = (0..9).map(|mip| compare(image, &exact, mip, texels)).collect();
+    let compared: Vec<Vec<Compared>> = (0..9).map(|mip| compare(image, &chosen, mip, texels)).collect();
     let mean = luminance(image.mean());
     let cells = |read: &dyn Fn(u32, &Compared) -> [f32; 4]| -> Vec<(f64, f64)> {
         let of_mip = |(mip, all): (usize, &Vec<Compared>)| {
@@ -196,14 +194,13 @@ fn filter_rows(
             cells.iter().map(|(rmse, worst)| format!("{rmse:.4} ({:.1} %)", worst * 100.0)).collect();
         tables.mips.row(format!("{name} | {setting} | {}", cells.join(" | ")));
     };
-    mip_row("f32", &of(&exact));
     for max_error in [0.001, 0.005, 0.02] {
-        let (environment, cpu) = baked(1, Storage::F16, max_error)?;
+        let (environment, cpu) = baked(1, max_error)?;
         let cells = of(&environment);
         row(&format!("{max_error}"), true, cpu, &cells, environment.params.measured.energy);
         if max_error == 0.005 {
-            mip_row("f16", &cells);
-            let (with_levels, cpu) = baked(4, Storage::F16, max_error)?;
+            mip_row("ours", &cells);
+            let (with_levels, cpu) = baked(4, max_error)?;
             row(&format!("{max_error}, K = 4"), true, cpu, &of(&with_levels), with_levels.params.measured.energy);
         }
     }
@@ -272,8 +269,8 @@ fn cmgen(path: &Path, samples: u32, settings: &Settings) -> Option<(f64, Vec<Fac
 }
 
 fn moment_rows(name: &str, image: &EnvironmentImage, settings: &Settings, rows: &mut Table) -> Result<(), Failure> {
-    let seen = Seen::new(image, Kernel::Ndf);
-    let ours: Vec<Vec<f64>> = COUNTS.iter().map(|count| optimal(&seen, *count).0).collect();
+    let histogram = RadianceHistogram::new(image, Kernel::Ndf);
+    let ours: Vec<Vec<f64>> = COUNTS.iter().map(|count| optimal(&histogram, *count).0).collect();
     let mut all = ours;
     for count in COUNTS {
         all.extend(FLOORS.map(|floor| log_uniform(image, count, floor)));

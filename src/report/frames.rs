@@ -29,9 +29,9 @@ mod with_viewer {
     use crate::report::settings::Settings;
     use crate::report::table::Table;
     use glint_bake_core::lobes::options::default_cell;
-    use glint_bake_core::ndf_maps::placement::{PlacementOptions, StochasticOptions};
+    use glint_bake_core::ndf_maps::options::{Options as NdfMapsOptions, PlacementOptions, StochasticOptions};
     use glint_bake_core::progress::Silent;
-    use glint_bake_core::surface::bake::ALIGNMENT;
+    use glint_bake_core::surface::{ALIGNMENT, SurfaceOptions};
     use glint_bake_core::synthesis::{SynthesisOptions, Target};
     use glint_bake_core::{area_light, dictionary, environment, lobes, ndf_maps, surface};
     use glint_formats::{Codec, Limits, Pack, PackBuilder, Section};
@@ -196,10 +196,8 @@ mod with_viewer {
 
     fn bake_ndf_maps(settings: &Settings, file: &str, placement: &PlacementOptions) -> Result<Vec<Section>, Failure> {
         let map = settings.normal_map(file, None)?;
-        let options = ndf_maps::bake::NdfMapsOptions::default();
-        let placement = ndf_maps::placement::bake(&map, options.roughness, placement)?;
-        let maps = ndf_maps::bake::bake(&map, &options, &Silent)?;
-        let material = ndf_maps::eval::Material { maps, placement };
+        let options = NdfMapsOptions { maps: Default::default(), placement: *placement };
+        let material = ndf_maps::bake::bake(&map, &options, &Silent)?;
         Ok(ndf_maps::sections::to_sections(stem(file), &material, Codec::None))
     }
 
@@ -218,8 +216,8 @@ mod with_viewer {
         let edge = settings.pick(4096, 512);
         let target = Target::Patches { width: edge, height: edge };
         let synthesis = SynthesisOptions { target, alignment: ALIGNMENT, seed: 1, ..SynthesisOptions::default() };
-        let options = lobes::LobesOptions { cell_texels: 8, footprints: 0, ..lobes::LobesOptions::default() };
-        let baked = surface::bake(&map, &options, &synthesis, &Silent)?;
+        let lobes = lobes::LobesOptions { cell_texels: 8, footprints: 0, ..lobes::LobesOptions::default() };
+        let baked = surface::bake(&map, &SurfaceOptions { lobes, synthesis }, &Silent)?;
         Ok(surface::sections::to_sections(stem(GOLD), &baked, Codec::None))
     }
 
@@ -231,7 +229,7 @@ mod with_viewer {
             measured_texels: 0,
             ..environment::EnvironmentOptions::default()
         };
-        let baked = environment::bake(&image, 0, &options, &Silent)?;
+        let baked = environment::bake(&image, &options, &Silent)?;
         Ok(environment::sections::to_sections(&format!("dancing_hall_K{levels}"), &baked, Codec::None))
     }
 

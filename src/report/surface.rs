@@ -9,9 +9,8 @@ use crate::plot::{Axis, Colour, Figure, Panel, Series};
 use glint_bake_core::lobes::LobesOptions;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
-use glint_bake_core::surface::bake::ALIGNMENT;
 use glint_bake_core::surface::quality::{Exact, Measured, seam_footprints};
-use glint_bake_core::surface::{Surface, SurfaceSettings, bake};
+use glint_bake_core::surface::{ALIGNMENT, Surface, SurfaceOptions, SurfaceSettings, bake};
 use glint_bake_core::synthesis::{SynthesisOptions, Target};
 use glint_formats::Wrap;
 
@@ -116,12 +115,12 @@ fn figure(all: Vec<(String, Curves)>) -> Figure {
 
 fn baked(sample: &NormalMap, target: Target) -> Result<Surface, Failure> {
     let usual = SynthesisOptions { target, alignment: ALIGNMENT, ..SynthesisOptions::default() };
-    let options = match target {
+    let synthesis = match target {
         Target::Patches { .. } => usual,
         Target::Unbounded { .. } => SynthesisOptions { patch: 96, overlap: 6, ..usual },
     };
     let lobes = LobesOptions { roughness: ROUGHNESS, footprints: 0, ..LobesOptions::default() };
-    Ok(bake(sample, &lobes, &options, &Silent)?)
+    Ok(bake(sample, &SurfaceOptions { lobes, synthesis }, &Silent)?)
 }
 
 fn rows(name: &str, sample: &NormalMap, target: Target, footprints: u32, table: &mut Table) -> Result<Curves, Failure> {

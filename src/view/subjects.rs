@@ -6,9 +6,9 @@ use crate::render::{Material, Method, Renderer, Shown};
 use crate::scene::Mesh;
 use glam::Vec3;
 use glint_bake_core::error::BakeError;
-use glint_bake_core::{area_light, dictionary, environment, lobes, ndf_maps, surface};
-use glint_formats::Pack;
+use glint_bake_core::{area_light, dictionary, environment, lobes, ndf_maps, surface, synthesis};
 use glint_formats::lobes::{BINDINGS, LobesParams};
+use glint_formats::{Pack, Wrap};
 use std::rc::Rc;
 
 /// All that can be shown, and the environment that can light it.
@@ -65,13 +65,13 @@ impl Subjects {
 
     fn add_dictionaries(&mut self, gpu: &Gpu, pack: &Pack, colours: &[Vec3]) -> Result<(), GpuError> {
         for name in dictionary::sections::dictionaries(pack) {
-            let (tables, params) = dictionary::sections::from_pack(pack, name).map_err(bad)?;
+            let params = dictionary::sections::params(pack, name).map_err(bad)?;
             let mut material = Material { alpha: [params.alpha_dict as f32; 2], ..Material::default() };
             if !colours.is_empty() {
                 material.colours = colours.len() as u32;
                 material.mean_colour = (colours.iter().sum::<Vec3>() / colours.len() as f32).to_array();
             }
-            let data = Rc::new(methods::dictionary::upload(gpu, &tables, colours));
+            let data = Rc::new(methods::dictionary::upload(gpu, pack, name, colours)?);
             self.add(Method::Dictionary, name, &data, material);
         }
         Ok(())
@@ -109,8 +109,8 @@ impl Subjects {
 
     fn add_surfaces(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
         for name in surface::sections::surfaces(pack) {
-            let surface = surface::sections::from_pack(pack, name).map_err(bad)?;
-            let (params, synthesis) = (&surface.lobes.params, &surface.synthesis.params);
+            let params = &lobes::sections::params(pack, name).map_err(bad)?;
+            let synthesis = &synthesis::sections::params(pack, name).map_err(bad)?;
             let data = Rc::new(bind_pack(gpu, pack, name, BINDINGS, params.wrap)?);
             let shown = self.add(Method::Surface, name, &data, lobes_material(params));
             shown.files = methods::lobes::surface_modules(params, synthesis, true).to_vec();
@@ -126,25 +126,26 @@ impl Subjects {
                 self.left_out.push(format!("environment '{name}' is left out: a scene has one, the first"));
                 continue;
             }
-            let baked = environment::sections::from_pack(pack, name).map_err(bad)?;
-            self.environment = Some(Rc::new(methods::environment::upload(gpu, &baked)));
+            let params = environment::sections::params(pack, name).map_err(bad)?;
+            let bindings = glint_formats::environment::BINDINGS;
+            self.environment = Some(Rc::new(bind_pack(gpu, pack, name, bindings, Wrap::Clamp)?));
             let material = Material { alpha: [0.25; 2], ..Material::default() };
             let shown = self.add(Method::Environment, name, &nothing(gpu), material);
-            shown.constants = methods::environment::constants(&baked.params);
+            shown.constants = methods::environment::constants(&params);
         }
         Ok(())
     }
 
     fn add_area_lights(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
         for name in area_light::sections::materials(pack) {
-            let baked = area_light::sections::from_pack(pack, name).map_err(bad)?;
+            let params = area_light::sections::params(pack, name).map_err(bad)?;
             let material = Material {
                 alpha: [0.1; 2],
-                texels_per_unit: baked.params.width as f32,
-                lobes: if baked.params.anisotropic { area_light::eval::LOBES } else { 0 },
+                texels_per_unit: params.width as f32,
+                lobes: if params.anisotropic { area_light::eval::LOBES } else { 0 },
                 ..Material::default()
             };
-            let data = Rc::new(methods::area_light::upload(gpu, &baked));
+            let data = Rc::new(bind_pack(gpu, pack, name, glint_formats::area_light::BINDINGS, params.wrap)?);
             self.add(Method::AreaLight, name, &data, material);
             self.add(Method::PlainLtc, name, &data, material);
         }
@@ -158,7 +159,7 @@ fn nothing(gpu: &Gpu) -> Rc<Resources> {
 }
 
 /// A tiny example repeats some times over the surface.
-fn ndf_material(baked: &ndf_maps::eval::Material) -> Material {
+fn ndf_material(baked: &ndf_maps::baked::Material) -> Material {
     const EXAMPLES: f32 = 16.0;
     let params = &baked.maps.params;
     Material {

@@ -1,7 +1,7 @@
 //! The command line and docs/CLI.md say the same: every flag, every exit code, and the help itself.
 
 use crate::support::root;
-use glint_bake::commands::programs;
+use glint_bake::commands::{flag_tables, programs};
 use glint_bake::exit::Exit;
 use std::fs;
 
@@ -44,6 +44,28 @@ fn every_flag_is_documented() {
         own.push_str(common);
         check_flags(&program, &own, program.get_name());
     }
+}
+
+/// The tables of flags are made from the flags. GLINT_BLESS=1 writes them anew, as `glint-bake generate markdown -o docs`.
+#[test]
+fn tables_of_flags_are_those_of_the_flags() {
+    let page = page();
+    let commands = programs().into_iter().flat_map(|program| {
+        let name = program.get_name().to_owned();
+        let subcommands: Vec<String> =
+            program.get_subcommands().map(|command| format!("{name} {}", command.get_name())).collect();
+        [name].into_iter().chain(subcommands).filter(|name| name != "glint-bake")
+    });
+    for command in commands.chain(["all programs".to_owned()]) {
+        let mark = format!("<!-- flags of {command} -->");
+        assert_eq!(page.matches(&mark).count(), 1, "docs/CLI.md has the mark {mark} once");
+    }
+    let renewed = flag_tables::renew(&page, &programs()).unwrap();
+    if std::env::var_os("GLINT_BLESS").is_some() {
+        fs::write(root().join("docs/CLI.md"), &renewed).unwrap();
+    }
+    let recorded = fs::read_to_string(root().join("docs/CLI.md")).unwrap();
+    assert!(recorded == renewed, "docs/CLI.md has other tables than the flags; run with GLINT_BLESS=1\n{renewed}");
 }
 
 #[test]

@@ -66,6 +66,25 @@ fn completions_are_parsed_by_their_shells() {
 }
 
 #[test]
+fn tables_of_flags_are_a_page_or_parts_of_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let printed = bake(folder.path(), &["generate", "markdown"]).ok().stdout;
+    assert!(printed.contains("## glint-bake area-light\n") && printed.contains("| `--anisotropic` | "), "{printed}");
+    bake(folder.path(), &["generate", "markdown", "-o", "docs"]).ok();
+    let path = folder.path().join("docs/CLI.md");
+    assert_eq!(fs::read_to_string(&path).unwrap(), printed);
+    fs::write(&path, "By hand.\n<!-- flags of glint-info -->\nstale row\n<!-- end of flags -->\n").unwrap();
+    bake(folder.path(), &["generate", "markdown", "-o", "docs"]).ok();
+    let page = fs::read_to_string(&path).unwrap();
+    assert!(
+        page.starts_with("By hand.\n<!-- flags of glint-info -->\n| flag |") && !page.contains("stale row"),
+        "{page}"
+    );
+    fs::write(&path, "<!-- flags of glint-inform --><!-- end of flags -->").unwrap();
+    assert_eq!(bake(folder.path(), &["generate", "markdown", "-o", "docs"]).code, 4);
+}
+
+#[test]
 fn what_cannot_be_generated_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("file"), b"in the way").unwrap();

@@ -106,7 +106,7 @@ fn what_cannot_work_is_refused_by_the_name_of_its_flag() {
 fn a_dry_run_checks_all_and_writes_nothing() {
     let case = case();
     let done = case.bake(&["-n", "--report", "r.json", "--depfile", "d"]).ok();
-    let said = "16 × 8 texels, 32 lobes a cell of 8 texels, 1.5 KiB at most; dry run, nothing was written";
+    let said = "16 × 8 texels, 32 lobes a cell of 8 texels, 2.9 KiB at most; dry run, nothing was written";
     assert!(done.stderr.contains(said), "{}", done.stderr);
     assert_eq!(case.names(), ["flakes.png", "scratches.png"]);
 }

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Edge of the table.
-pub const SIZE: u32 = 64;
+pub(super) const SIZE: u32 = 64;
 /// Weights and nodes on (−1, 1) of Gauss quadrature with 16 points, the positive half.
 const GAUSS16: [(f64, f64); 8] = [
     (0.095_012_509_837_637_44, 0.189_450_610_455_068_5),
@@ -127,13 +127,13 @@ fn masking(cos_o: f64, cos_i: f64, a: f64) -> f64 {
 }
 
 /// View cosine of a column and roughness of a row.
-pub fn arguments(column: u32, row: u32) -> (f64, f64) {
+fn arguments(column: u32, row: u32) -> (f64, f64) {
     let [u, v] = [column, row].map(|k| (f64::from(k) + 0.5) / f64::from(SIZE));
     (u, v * v)
 }
 
 /// The table, row by row.
-pub fn table() -> Vec<Areas> {
+pub(super) fn table() -> Vec<Areas> {
     (0..SIZE * SIZE)
         .into_par_iter()
         .map(|k| {

@@ -7,16 +7,15 @@ use super::baked::Environment;
 use super::cube::{Resampling, texel_solid_angle_sr};
 use super::image::{EnvironmentImage, luminance};
 use super::kernel::{Lobe, roughness_of_mips};
-use super::levels::{Seen, fewest, log_uniform, optimal, shares};
+use super::levels::{RadianceHistogram, fewest, log_uniform, optimal, shares};
 use super::options::{EnvironmentOptions, LevelCount};
 use super::prefilter::filter_mip;
 use super::quality;
-use super::rounding::{self, Mip, radiance_scale, rounding_error, shared_exponent};
+use super::rounding::{self, Mip, half_bits, radiance_scale, rounding_error, shared_exponent};
 use super::tree::{BASE_CHANNELS, Tree};
 use crate::error::{BakeError, Result};
 use crate::progress::Progress;
-use glint_formats::environment::{EnvironmentParams, LevelChoice, MeasuredError, Storage};
-use half::f16;
+use glint_formats::environment::{EnvironmentParams, LevelChoice, MeasuredError};
 
 /// Bakes an environment of an image. Stages of `progress`: `filter`, in texels, and `measure`, in mips.
 ///
@@ -28,7 +27,6 @@ pub fn bake(image: &EnvironmentImage, options: &EnvironmentOptions, progress: &d
     let mut params = EnvironmentParams {
         face_size: options.face_size,
         kernel: options.kernel,
-        storage: options.storage,
         roughness: roughness_of_mips(options.mips()),
         radiance_scale: 1.0,
         coloured: options.coloured,
@@ -58,7 +56,7 @@ pub fn bake(image: &EnvironmentImage, options: &EnvironmentOptions, progress: &d
     environment.albedo = albedo::table()
         .into_iter()
         .flat_map(|areas| [areas.scale, areas.bias, areas.reflecting, areas.whole])
-        .map(|value| f16::from_f32(value as f32).to_bits())
+        .map(|value| half_bits(value))
         .collect();
     quality::measure(image, options.measured_texels, &mut environment, progress);
     check_error(&environment)?;
@@ -67,14 +65,14 @@ pub fn bake(image: &EnvironmentImage, options: &EnvironmentOptions, progress: &d
 
 /// Levels and the mean relative error of the second moment that they lead to.
 fn choose_levels(image: &EnvironmentImage, options: &EnvironmentOptions) -> (Vec<f64>, f64) {
-    let seen = || Seen::new(image, options.kernel);
+    let histogram = || RadianceHistogram::new(image, options.kernel);
     match (options.levels, options.level_choice) {
         (LevelCount::Exactly(1), _) => (vec![luminance(image.mean())], 0.0),
-        (LevelCount::Fewest(error), _) => fewest(&seen(), error),
-        (LevelCount::Exactly(count), LevelChoice::Optimal) => optimal(&seen(), count as usize),
+        (LevelCount::Fewest(error), _) => fewest(&histogram(), error),
+        (LevelCount::Exactly(count), LevelChoice::Optimal) => optimal(&histogram(), count as usize),
         (LevelCount::Exactly(count), LevelChoice::LogUniform) => {
             let levels = log_uniform(image, count as usize, options.floor);
-            let error = seen().error(&levels);
+            let error = histogram().error(&levels);
             (levels, error)
         }
     }
@@ -93,9 +91,9 @@ fn choose_scale(image: &EnvironmentImage, mips: &Mips, params: &mut EnvironmentP
     let channels = mips.channels;
     let of = |(mip, texels)| Mip { texels, channels, max_error: quality::allowed_error(params, mip) };
     let all: Vec<Mip<'_>> = mips.texels.iter().map(Vec::as_slice).enumerate().map(of).collect();
-    let scale = radiance_scale(image, &all, params.storage);
+    let scale = radiance_scale(image, &all);
     let mean = luminance(image.mean());
-    let error = |mip: &Mip<'_>| if mean > 0.0 { rounding_error(mip, scale, params.storage) / mean } else { 0.0 };
+    let error = |mip: &Mip<'_>| if mean > 0.0 { rounding_error(mip, scale) / mean } else { 0.0 };
     params.measured.rounding = all.iter().map(error).collect();
     params.radiance_scale = scale;
 }
@@ -184,16 +182,16 @@ fn round(mips: &Mips, environment: &mut Environment) {
     let layers = params.indicator_layers() as usize;
     for texels in &mips.texels {
         let count = texels.len() / mips.channels;
-        let mut indicators = vec![0u32; layers * count * 4];
+        let mut indicators = vec![0u16; layers * count * 4];
         let mut colours = vec![0u32; if params.coloured { more * count } else { 0 }];
         for (k, texel) in texels.chunks_exact(mips.channels).enumerate() {
             let rgba = [texel[0], texel[1], texel[2], texel[3].max(0.0).sqrt()];
-            rounding::radiance(rgba, params.radiance_scale, params.storage, &mut environment.radiance);
+            environment.radiance.extend(rgba.map(|value| half_bits(value / params.radiance_scale)));
             let shares = &texel[BASE_CHANNELS..BASE_CHANNELS + more];
             // Blocks taken as points may give a few 1e-4 more than the whole.
             let whole = shares.iter().sum::<f64>().max(1.0);
             let shares: Vec<f64> = shares.iter().map(|share| share.max(0.0) / whole).collect();
-            for (i, bits) in rounding::indicators(&shares, params.storage).into_iter().enumerate() {
+            for (i, bits) in rounding::indicators(&shares).into_iter().enumerate() {
                 indicators[((i / 4) * count + k) * 4 + i % 4] = bits;
             }
             if params.coloured {
@@ -203,12 +201,7 @@ fn round(mips: &Mips, environment: &mut Environment) {
                 }
             }
         }
-        for bits in indicators {
-            match params.storage {
-                Storage::F32 => environment.indicators.extend(bits.to_le_bytes()),
-                Storage::F16 | Storage::Unorm16 => environment.indicators.extend((bits as u16).to_le_bytes()),
-            }
-        }
+        environment.indicators.extend(indicators);
         environment.colours.extend(colours);
     }
 }
@@ -232,4 +225,86 @@ fn check_error(environment: &Environment) -> Result<()> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::environment::image::direction;
+    use crate::environment::reference::texel_mean;
+    use crate::progress::Silent;
+    use half::f16;
+    use rayon::prelude::*;
+
+    /// Sky, ground, some texture, and a sun of a few pixels that is `range` times as bright.
+    fn sunny(width: u32, height: u32, range: f32) -> EnvironmentImage {
+        let sun = glam::DVec3::new(0.3, 0.5, -0.6).normalize();
+        let pixel = |k: u32| {
+            let [u, v] = [(k % width, width), (k / width, height)].map(|(c, of)| (f64::from(c) + 0.5) / f64::from(of));
+            let d = direction(std::f64::consts::TAU * (u - 0.5), (std::f64::consts::PI * (0.5 - v)).sin());
+            if d.dot(sun) > 0.996 {
+                return [range, 0.9 * range, 0.8 * range];
+            }
+            let texture = 1.0 + 0.5 * ((13.0 * d.x).sin() * (17.0 * d.z).cos()) as f32;
+            if d.y > 0.0 { [0.3 * texture, 0.5 * texture, texture] } else { [0.2 * texture, 0.15, 0.1] }
+        };
+        EnvironmentImage::new(width, height, (0..width * height).map(pixel).collect()).unwrap()
+    }
+
+    fn options(face_size: u32, min_face_size: u32) -> EnvironmentOptions {
+        let levels = LevelCount::Exactly(1);
+        EnvironmentOptions { face_size, min_face_size, levels, measured_texels: 0, ..EnvironmentOptions::default() }
+    }
+
+    /// A sun of a few texels decides what rounding costs, and the factor of stored radiance follows it.
+    #[test]
+    fn a_sun_rounds_well() {
+        let options = options(64, 16);
+        for (range, chosen) in [(1.0f32, false), (1e6, true), (3.3e7, true)] {
+            let mut pixels = sunny(256, 128, 1.0).pixels;
+            pixels[37 * 256 + 120] = [range, 0.9 * range, 0.8 * range];
+            let image = EnvironmentImage::new(256, 128, pixels).unwrap();
+            let params = bake(&image, &options, &Silent).unwrap().params;
+            let exact = filtered_mips(&image, &options, &params, &Silent);
+            let scale = params.radiance_scale;
+            assert_eq!(scale.log2().fract() != 0.0, chosen, "{range}: {scale}");
+            assert_eq!(f64::from(scale as f32), scale);
+            let mean = luminance(image.mean());
+            let rounding = |scale: f64, mip: usize| {
+                let texels = exact.texels[mip].chunks_exact(exact.channels);
+                let count = texels.len() as f64;
+                let squares = texels.map(|texel| {
+                    let stored = |value: f64| f16::from_f32((value / scale) as f32).to_f64() * scale;
+                    luminance([0, 1, 2].map(|c| stored(texel[c]) - texel[c])).powi(2)
+                });
+                (squares.sum::<f64>() / count).sqrt() / mean
+            };
+            for mip in 0..3 {
+                let recorded = params.measured.rounding[mip];
+                let (found, plain) = (rounding(scale, mip), rounding(scale.log2().floor().exp2(), mip));
+                assert!((recorded / found - 1.0).abs() < 0.02, "{range} mip {mip}: {recorded} {found}");
+                assert!(recorded <= 0.02, "{range} mip {mip}: {recorded}");
+                if chosen && mip == 0 {
+                    assert!(found < 0.5 * plain, "{range} mip {mip}: {found} {plain}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_first_mip_is_the_mean_over_every_texel() {
+        // Pixels that fit no texel, some of them a million times as bright.
+        let (image, size) = (sunny(101, 51, 1e6), 16);
+        let pixels: Vec<f32> = image.pixels.iter().flatten().copied().collect();
+        let texels = Resampling::new(&image, size).apply(3, &pixels);
+        // The reference's lines leave some 1e-4 where a bright edge runs nearly along them.
+        let error = |(k, texel): (u32, &[f64])| {
+            let exact = texel_mean(&image, (k / (size * size)) as usize, k % size, k / size % size, size, 512);
+            (luminance([texel[0], texel[1], texel[2]]) / exact.luminance - 1.0).abs()
+        };
+        let all: Vec<(u32, &[f64])> = (0..6 * size * size).zip(texels.chunks_exact(3)).collect();
+        let worst = all.into_par_iter().map(error).reduce(|| 0.0, f64::max);
+        println!("worst texel: {worst:.1e}");
+        assert!(worst <= 5e-4, "{worst}");
+    }
 }

@@ -1,6 +1,6 @@
 //! A baked environment: its parameters and the bytes of its textures, and how a texel is found in them.
 
-use glint_formats::environment::{EnvironmentParams, EnvironmentUniform, Storage};
+use glint_formats::environment::{EnvironmentParams, EnvironmentUniform};
 use half::f16;
 
 /// A baked environment. Textures are in the order of the pack: mip, layer, face, row, column.
@@ -10,10 +10,10 @@ pub struct Environment {
     pub params: EnvironmentParams,
     /// What a shader binds of them.
     pub uniform: EnvironmentUniform,
-    /// Prefiltered radiance and root mean square luminance, RGBA.
-    pub radiance: Vec<u8>,
-    /// Indicators of levels from 1 on, four a layer; empty with one level.
-    pub indicators: Vec<u8>,
+    /// Prefiltered radiance and root mean square luminance over the scale, RGBA, as half floats.
+    pub radiance: Vec<u16>,
+    /// Indicators of levels from 1 on, four a layer, as half floats; empty with one level.
+    pub indicators: Vec<u16>,
     /// Colours of levels from 1 on, a layer each; empty when levels have none.
     pub colours: Vec<u32>,
     /// Albedo table: scale and bias of F₀, visible reflecting area, whole facet area, as half floats.
@@ -42,32 +42,13 @@ impl Environment {
     /// Radiance of a texel, R, G, B and root mean square luminance, as a GPU reads it times the scale.
     pub fn radiance_texel(&self, mip: u32, face: usize, i: u32, j: u32) -> [f32; 4] {
         let texel = self.index(1, 0, mip, face, i, j);
-        let scale = self.params.radiance_scale as f32;
-        [0, 1, 2, 3].map(|c| {
-            scale
-                * match self.params.storage {
-                    Storage::F32 => {
-                        let at = 16 * texel + 4 * c;
-                        let b = &self.radiance[at..at + 4];
-                        f32::from_le_bytes([b[0], b[1], b[2], b[3]])
-                    }
-                    Storage::F16 | Storage::Unorm16 => {
-                        let at = 8 * texel + 2 * c;
-                        f16::from_le_bytes([self.radiance[at], self.radiance[at + 1]]).to_f32()
-                    }
-                }
-        })
+        [0, 1, 2, 3].map(|c| self.uniform.radiance_scale * f16::from_bits(self.radiance[4 * texel + c]).to_f32())
     }
 
     /// Indicators of levels 4 layer + 1 to 4 layer + 4 of a texel.
     pub fn indicator_texel(&self, layer: usize, mip: u32, face: usize, i: u32, j: u32) -> [f32; 4] {
         let texel = self.index(self.params.indicator_layers() as usize, layer, mip, face, i, j);
-        let bytes = if self.params.storage == Storage::F32 { 4 } else { 2 };
-        [0, 1, 2, 3].map(|c| {
-            let at = (4 * texel + c) * bytes;
-            let bits = self.indicators[at..at + bytes].iter().rev().fold(0, |bits, b| bits << 8 | u32::from(*b));
-            decoded(bits, self.params.storage) as f32
-        })
+        [0, 1, 2, 3].map(|c| f16::from_bits(self.indicators[4 * texel + c]).to_f32())
     }
 
     /// Colour of level `layer` + 1 of a texel.
@@ -79,15 +60,6 @@ impl Environment {
     pub fn albedo_texel(&self, column: u32, row: u32) -> [f32; 4] {
         let at = 4 * (row * self.params.albedo_size + column) as usize;
         [0, 1, 2, 3].map(|c| f16::from_bits(self.albedo[at + c]).to_f32())
-    }
-}
-
-/// What a GPU reads.
-pub fn decoded(bits: u32, storage: Storage) -> f64 {
-    match storage {
-        Storage::F16 => f16::from_bits(bits as u16).to_f64(),
-        Storage::F32 => f64::from(f32::from_bits(bits)),
-        Storage::Unorm16 => f64::from(bits) / 65535.0,
     }
 }
 

@@ -19,7 +19,7 @@ const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
 /// Direction, not of unit length, through (s, t) of a face; each from −1 to 1, t down.
-pub fn face_direction(face: usize, s: f64, t: f64) -> DVec3 {
+pub(super) fn face_direction(face: usize, s: f64, t: f64) -> DVec3 {
     match face {
         0 => DVec3::new(1.0, -t, -s),
         1 => DVec3::new(-1.0, -t, s),
@@ -63,7 +63,7 @@ pub fn texel_solid_angle_sr(i: u32, j: u32, size: u32) -> f64 {
 }
 
 /// How the texels of a cube are made of pixels: for each texel, which pixels by which share.
-pub struct Resampling {
+pub(super) struct Resampling {
     size: u32,
     /// One entry a row of texels of a face, in order.
     rows: Vec<Row>,
@@ -79,13 +79,13 @@ struct Row {
 
 impl Resampling {
     /// The resampling of `image` to faces of `size` texels (even).
-    pub fn new(image: &EnvironmentImage, size: u32) -> Resampling {
+    pub(super) fn new(image: &EnvironmentImage, size: u32) -> Resampling {
         let rows = (0..6 * size).into_par_iter().map(|row| Row::new(image, (row / size) as usize, row % size, size));
         Resampling { size, rows: rows.collect() }
     }
 
     /// Texels of all faces, of `channels` interleaved numbers a pixel.
-    pub fn apply(&self, channels: usize, pixels: &[f32]) -> Vec<f64> {
+    pub(super) fn apply(&self, channels: usize, pixels: &[f32]) -> Vec<f64> {
         let mut texels = vec![0.0; self.rows.len() * self.size as usize * channels];
         texels.par_chunks_mut(self.size as usize * channels).zip(&self.rows).for_each(|(texels, row)| {
             let mut begin = 0;

@@ -12,7 +12,7 @@
 
 #import counting::eval
 
-// Shape of the cubes, from the section ENPP.
+// What a shader needs of the parameters: the section ENUB.
 struct GlintEnvironment {
     // Radiance of each level.
     level: GlintLevels,

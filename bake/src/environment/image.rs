@@ -9,7 +9,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 /// Brightest channel that is taken; its square still fits a float with room for sums.
-pub const MAX_RADIANCE: f32 = 1e12;
+const MAX_RADIANCE: f32 = 1e12;
 /// By how many columns an image may miss twice its rows; odd sizes need one or two.
 const ASPECT_SLACK: u32 = 2;
 /// Luminance of linear RGB with the primaries of Rec. 709.
@@ -46,7 +46,7 @@ impl EnvironmentImage {
     /// Checks radiance. Negative channels become 0 and are counted.
     ///
     /// # Errors
-    /// [`BakeError::BadInput`] names the first pixel that is NaN, infinite or above [`MAX_RADIANCE`], or says why the
+    /// [`BakeError::BadInput`] names the first pixel that is NaN, infinite or above 1e12, or says why the
     /// size is none of a whole sphere.
     pub fn new(width: u32, height: u32, mut pixels: Vec<[f32; 3]>) -> Result<EnvironmentImage> {
         check_size(width, height)?;
@@ -88,13 +88,13 @@ impl EnvironmentImage {
     }
 
     /// Solid angle of a pixel of row y, in steradians. A row's pixels are equal.
-    pub fn solid_angle_sr(&self, y: u32) -> f64 {
+    pub(super) fn solid_angle_sr(&self, y: u32) -> f64 {
         let [top, bottom] = [y, y + 1].map(|row| self.sine(f64::from(row)));
         (top - bottom) * 2.0 * PI / f64::from(self.width)
     }
 
     /// Sine of the latitude at a row, which may lie between two.
-    pub fn sine(&self, row: f64) -> f64 {
+    pub(super) fn sine(&self, row: f64) -> f64 {
         libm::sin(PI * (0.5 - row / f64::from(self.height)))
     }
 
@@ -111,7 +111,7 @@ impl EnvironmentImage {
     }
 
     /// The same radiance in pixels of 1/factor the size.
-    pub fn divided(&self, factor: u32) -> EnvironmentImage {
+    pub(super) fn divided(&self, factor: u32) -> EnvironmentImage {
         let (width, height) = (self.width * factor, self.height * factor);
         let mut pixels = Vec::with_capacity(width as usize * height as usize);
         for y in 0..height {

@@ -38,17 +38,17 @@ pub fn even_directions(count: usize, turn: f64) -> Vec<DVec3> {
         .collect()
 }
 
-/// How much of what glints see has which radiance.
-pub struct Seen {
+/// How much of what reflects in glints has which radiance, over bins of log radiance.
+pub struct RadianceHistogram {
     /// Largest luminance of each bin that is not empty, rising.
     tops: Vec<f64>,
     /// Weight, weight · L and weight · L² of all bins up to each.
     below: Vec<[f64; 3]>,
 }
 
-impl Seen {
+impl RadianceHistogram {
     /// Gathers an image under a kernel.
-    pub fn new(image: &EnvironmentImage, kernel: Kernel) -> Seen {
+    pub fn new(image: &EnvironmentImage, kernel: Kernel) -> RadianceHistogram {
         let brightest = image.max_luminance();
         let mut bins = vec![[0.0; 4]; BINS];
         if brightest > 0.0 {
@@ -73,7 +73,7 @@ impl Seen {
                 below.push(sum);
             }
         }
-        Seen { tops, below }
+        RadianceHistogram { tops, below }
     }
 
     /// Over-estimate of the second moment between levels at tops `i` (or 0) and `j`, relative to the whole.
@@ -145,13 +145,13 @@ impl Seen {
 }
 
 /// The best `count` levels (2 or more) and their mean relative error of the second moment.
-pub fn optimal(seen: &Seen, count: usize) -> (Vec<f64>, f64) {
-    seen.optimal(count).pop().unwrap_or_else(|| (spread_below(1.0, 2), 0.0))
+pub fn optimal(histogram: &RadianceHistogram, count: usize) -> (Vec<f64>, f64) {
+    histogram.optimal(count).pop().unwrap_or_else(|| (spread_below(1.0, 2), 0.0))
 }
 
 /// The fewest levels whose error is `most_error` or less; [`MAX_LEVELS`] when no count is enough.
-pub fn fewest(seen: &Seen, most_error: f64) -> (Vec<f64>, f64) {
-    let mut all = seen.optimal(MAX_LEVELS);
+pub fn fewest(histogram: &RadianceHistogram, most_error: f64) -> (Vec<f64>, f64) {
+    let mut all = histogram.optimal(MAX_LEVELS);
     let first = all.iter().position(|(_, error)| *error <= most_error).unwrap_or(all.len() - 1);
     all.swap_remove(first)
 }

@@ -91,7 +91,7 @@ pub fn radiance_at(environment: &Environment, direction: Vec3, mip: f32) -> [f32
 }
 
 /// Shares of levels 4 `layer` + 1 to 4 `layer` + 4 around a direction.
-pub fn indicators_at(environment: &Environment, layer: usize, direction: Vec3, mip: f32) -> [f32; 4] {
+pub(super) fn indicators_at(environment: &Environment, layer: usize, direction: Vec3, mip: f32) -> [f32; 4] {
     let mut sum = [0.0; 4];
     trilinear(environment, direction, mip, |mip, (face, i, j), weight| {
         let texel = environment.indicator_texel(layer, mip, face, i, j);
@@ -111,7 +111,7 @@ pub fn colour_at(environment: &Environment, layer: usize, direction: Vec3, mip: 
 }
 
 /// The albedo table at a place, each coordinate from 0 to 1, clamped to the middles of its outer texels.
-pub fn albedo_at(environment: &Environment, place: [f32; 2]) -> [f32; 4] {
+pub(super) fn albedo_at(environment: &Environment, place: [f32; 2]) -> [f32; 4] {
     let last = (environment.params.albedo_size - 1) as f32;
     let [x, y] = place.map(|c| (c * (last + 1.0) - 0.5).clamp(0.0, last));
     let (i, j) = (x.floor(), y.floor());

@@ -16,7 +16,7 @@
 
 pub mod albedo;
 mod bake;
-pub mod baked;
+mod baked;
 pub mod cube;
 pub mod eval;
 pub mod image;

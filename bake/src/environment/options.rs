@@ -2,7 +2,7 @@
 
 use super::image::EnvironmentImage;
 use crate::error::{BakeError, Result};
-use glint_formats::environment::{Kernel, LevelChoice, MAX_FACE_SIZE, MAX_LEVELS, Storage};
+use glint_formats::environment::{Kernel, LevelChoice, MAX_FACE_SIZE, MAX_LEVELS};
 
 /// Smallest edge of a face.
 pub const MIN_FACE_SIZE: u32 = 4;
@@ -41,8 +41,6 @@ pub struct EnvironmentOptions {
     pub max_error: f64,
     /// Filter.
     pub kernel: Kernel,
-    /// Storage.
-    pub storage: Storage,
     /// Texels a mip that are compared with sums over the source, at most.
     pub measured_texels: u32,
 }
@@ -58,7 +56,6 @@ impl Default for EnvironmentOptions {
             coloured: false,
             max_error: 0.005,
             kernel: Kernel::Ndf,
-            storage: Storage::F16,
             measured_texels: 16,
         }
     }
@@ -123,10 +120,9 @@ impl EnvironmentOptions {
     /// Bytes of the finished textures, at most.
     pub fn texture_bytes(&self) -> u64 {
         let texels: u64 = (0..self.mips()).map(|mip| 6 * u64::from(self.face_size >> mip).pow(2)).sum();
-        let component = if self.storage == Storage::F32 { 4 } else { 2 };
         let levels = self.most_levels() - 1;
         let colours = if self.coloured { 4 * levels } else { 0 };
-        texels * (4 * component * (1 + levels.div_ceil(4)) + colours)
+        texels * (8 * (1 + levels.div_ceil(4)) + colours)
     }
 
     /// Bytes that the bake holds at a time, roughly.

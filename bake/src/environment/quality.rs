@@ -118,7 +118,7 @@ pub fn error_of(compared: &[Compared], mean: f64) -> MeasuredMip {
 }
 
 /// Measures every mip by up to `count` texels and records it.
-pub fn measure(image: &EnvironmentImage, count: u32, environment: &mut Environment, progress: &dyn Progress) {
+pub(super) fn measure(image: &EnvironmentImage, count: u32, environment: &mut Environment, progress: &dyn Progress) {
     let mips = environment.params.mips();
     environment.params.measured.texels = count;
     if count == 0 {

@@ -19,11 +19,11 @@ use glam::Vec2;
 use glint_formats::environment::MAX_LEVELS;
 
 /// Corners that a place lies between, on two levels.
-pub const CORNERS: usize = 4;
+const CORNERS: usize = 4;
 /// Largest |level|; the edge of a cell is 2^level surface units.
-pub const MAX_LEVEL: f32 = 24.0;
+const SURFACE_MAX_LEVEL: f32 = 24.0;
 /// Most facets of a draw.
-pub const MAX_FACETS: f32 = 1e16;
+const MAX_FACETS: f32 = 1e16;
 /// (√3 − 1) / 2, which makes the triangles of a skewed square grid equilateral.
 const SKEW: f32 = 0.366_025_4;
 /// Least weight of a corner: a place on an edge would divide by zero.
@@ -55,7 +55,7 @@ pub fn footprint_area(d_dx: Vec2, d_dy: Vec2) -> f32 {
 /// most 0.05 less than the logarithm.
 pub fn surface_lod(area: f32) -> f32 {
     let logarithm = area.max(1e-20).to_bits() as f32 * (1.0 / 8_388_608.0) - 127.0;
-    (0.5 * logarithm).clamp(-MAX_LEVEL, MAX_LEVEL - 1.0)
+    (0.5 * logarithm).clamp(-SURFACE_MAX_LEVEL, SURFACE_MAX_LEVEL - 1.0)
 }
 
 /// Facets under a pixel of `area` at `density` facets a unit.

@@ -44,7 +44,7 @@ pub fn ggx(cos_h: f64, alpha: f64) -> f64 {
 }
 
 /// Weight of light from `l` in a texel towards `n`.
-pub fn kernel_weight(kernel: Kernel, n: DVec3, l: DVec3, alpha: f64) -> f64 {
+fn kernel_weight(kernel: Kernel, n: DVec3, l: DVec3, alpha: f64) -> f64 {
     let cos_l = n.dot(l);
     if cos_l <= 0.0 {
         return 0.0;
@@ -140,7 +140,7 @@ pub fn second_moments(
 
 /// Mean radiance over the part of the sphere that texel (i, j) of a face covers. Exact along `rows` lines of the texel,
 /// which every edge of a pixel that crosses them cuts in pieces of one radiance; the midpoint rule across them.
-pub fn texel_mean(image: &EnvironmentImage, face: usize, i: u32, j: u32, size: u32, rows: u32) -> Filtered {
+pub(super) fn texel_mean(image: &EnvironmentImage, face: usize, i: u32, j: u32, size: u32, rows: u32) -> Filtered {
     let place = |k: u32, part: f64| 2.0 * (f64::from(k) + part) / f64::from(size) - 1.0;
     let (left, right) = (place(i, 0.0), place(i, 1.0));
     let mut sum = Filtered::default();
@@ -197,7 +197,7 @@ fn pixel_edges(image: &EnvironmentImage, face: usize, t: f64, left: f64, right: 
 }
 
 /// Index of the pixel in a direction.
-pub fn pixel_of(image: &EnvironmentImage, d: DVec3) -> usize {
+fn pixel_of(image: &EnvironmentImage, d: DVec3) -> usize {
     let u = libm::atan2(d.x, -d.z) / (2.0 * PI) + 0.5;
     let v = 0.5 - libm::asin(d.y.clamp(-1.0, 1.0)) / PI;
     let cell = |part: f64, count: u32| ((part * f64::from(count)) as u32).min(count - 1);

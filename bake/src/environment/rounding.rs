@@ -9,9 +9,7 @@
 //! can exceed the error that a sharp mip may have. How much it is depends on where between two powers of two those few
 //! texels fall, so where it matters the factor is chosen for them. The paper stores radiance as it is.
 
-use super::baked::decoded;
 use super::image::{EnvironmentImage, luminance};
-use glint_formats::environment::Storage;
 use half::f16;
 
 /// Largest stored radiance whose neighbours are still finite half floats.
@@ -28,47 +26,20 @@ const STEPS: u32 = 512;
 /// Texels a mip, its brightest, that factors are tried on. Where more matter, rounding averages out for any factor.
 const TRIED: usize = 512;
 
-/// Bytes of a radiance texel: R, G, B and root mean square luminance, each over `scale`.
-pub fn radiance(texel: [f64; 4], scale: f64, storage: Storage, out: &mut Vec<u8>) {
-    for value in texel {
-        match storage {
-            Storage::F32 => out.extend(((value / scale) as f32).to_le_bytes()),
-            Storage::F16 | Storage::Unorm16 => out.extend(half(value / scale).to_le_bytes()),
-        }
-    }
+/// Bits of the half float nearest to a value that is not negative; the largest finite one beyond.
+pub fn half_bits(value: f64) -> u16 {
+    f16::from_f32((value as f32).min(65504.0)).to_bits()
 }
 
-fn half(value: f64) -> f16 {
-    f16::from_f32((value as f32).min(65504.0))
-}
-
-/// What a GPU reads of a radiance over its scale.
-pub fn stored(value: f64, storage: Storage) -> f64 {
-    match storage {
-        Storage::F32 => f64::from(value as f32),
-        Storage::F16 | Storage::Unorm16 => half(value).to_f64(),
-    }
-}
-
-/// Bits of indicators that add up to at most 1 once decoded. `shares` are not negative.
-pub fn indicators(shares: &[f64], storage: Storage) -> Vec<u32> {
-    let mut bits: Vec<u32> = shares.iter().map(|share| encoded(share.min(1.0), storage)).collect();
-    while bits.iter().map(|bits| decoded(*bits, storage)).sum::<f64>() > 1.0 {
-        let Some(largest) = bits.iter_mut().max_by(|a, b| decoded(**a, storage).total_cmp(&decoded(**b, storage)))
-        else {
-            break;
-        };
-        *largest -= 1; // The bits of positive floats are in order, so this is the next smaller number.
+/// Bits of half floats that add up to at most 1. `shares` are not negative.
+pub fn indicators(shares: &[f64]) -> Vec<u16> {
+    let mut bits: Vec<u16> = shares.iter().map(|share| half_bits(share.min(1.0))).collect();
+    while bits.iter().map(|bits| f16::from_bits(*bits).to_f64()).sum::<f64>() > 1.0 {
+        // The bits of positive floats are in order, so the largest is the largest number and one less the next smaller one.
+        let Some(largest) = bits.iter_mut().max() else { break };
+        *largest -= 1;
     }
     bits
-}
-
-fn encoded(value: f64, storage: Storage) -> u32 {
-    match storage {
-        Storage::F16 => u32::from(f16::from_f32(value as f32).to_bits()),
-        Storage::F32 => (value as f32).to_bits(),
-        Storage::Unorm16 => (value * 65535.0).round() as u32,
-    }
 }
 
 /// A colour as E5B9G9R9 (Vulkan specification, "Conversion to shared exponent"): 9 bits a channel and one exponent.
@@ -101,10 +72,10 @@ pub struct Mip<'a> {
 
 /// Stored radiance times this is radiance: 1, or what brings `image` into the range of half floats, or what makes the
 /// brightest texels of `mips` round well.
-pub fn radiance_scale(image: &EnvironmentImage, mips: &[Mip<'_>], storage: Storage) -> f64 {
+pub fn radiance_scale(image: &EnvironmentImage, mips: &[Mip<'_>]) -> f64 {
     let brightest = image.pixels.iter().flatten().fold(0.0f32, |a, b| a.max(*b));
     let brightest = f64::from(brightest);
-    if storage == Storage::F32 || brightest == 0.0 {
+    if brightest == 0.0 {
         return 1.0;
     }
     let plain = if (DIM..=MAX_STORED).contains(&brightest) {
@@ -114,7 +85,7 @@ pub fn radiance_scale(image: &EnvironmentImage, mips: &[Mip<'_>], storage: Stora
     };
     let mean = luminance(image.mean());
     let worst = |mips: &[Mip<'_>], scale: f64| {
-        mips.iter().map(|mip| rounding_error(mip, scale, storage) / (mean * mip.max_error)).fold(0.0, f64::max)
+        mips.iter().map(|mip| rounding_error(mip, scale) / (mean * mip.max_error)).fold(0.0, f64::max)
     };
     if worst(mips, plain) <= UNHEARD {
         return plain;
@@ -125,7 +96,7 @@ pub fn radiance_scale(image: &EnvironmentImage, mips: &[Mip<'_>], storage: Stora
         let of = |(texels, mip): &(Vec<f64>, &Mip<'_>)| {
             let few = Mip { texels, channels: 3, max_error: mip.max_error };
             let part = (texels.len() as f64 / 3.0) / (mip.texels.len() / mip.channels) as f64;
-            rounding_error(&few, scale, storage) * part.sqrt() / mip.max_error
+            rounding_error(&few, scale) * part.sqrt() / mip.max_error
         };
         bright.iter().map(of).fold(0.0, f64::max)
     };
@@ -146,10 +117,10 @@ fn brightest_of(mip: &Mip<'_>) -> Vec<f64> {
 }
 
 /// Root mean square error of luminance over a mip's texels that rounding alone makes.
-pub fn rounding_error(mip: &Mip<'_>, scale: f64, storage: Storage) -> f64 {
+pub fn rounding_error(mip: &Mip<'_>, scale: f64) -> f64 {
     let mut squares = 0.0;
     for texel in mip.texels.chunks_exact(mip.channels) {
-        let error = [0, 1, 2].map(|c| stored(texel[c] / scale, storage) * scale - texel[c]);
+        let error = [0, 1, 2].map(|c| f16::from_bits(half_bits(texel[c] / scale)).to_f64() * scale - texel[c]);
         squares += luminance(error).powi(2);
     }
     let count = mip.texels.len() / mip.channels;
@@ -168,34 +139,28 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (state >> 40) as f64 / (1u64 << 24) as f64
         };
-        for storage in [Storage::F16, Storage::F32, Storage::Unorm16] {
-            for count in [1, 3, 7, 15] {
-                for _ in 0..2000 {
-                    let raw: Vec<f64> = (0..count).map(|_| unit().powi(6)).collect();
-                    let whole: f64 = raw.iter().sum();
-                    let shares: Vec<f64> = raw.iter().map(|share| share / whole).collect();
-                    let read: Vec<f64> = indicators(&shares, storage).iter().map(|b| decoded(*b, storage)).collect();
-                    assert!(read.iter().sum::<f64>() <= 1.0, "{storage:?} {read:?}");
-                    let largest = shares.iter().copied().fold(0.0, f64::max);
-                    for (read, share) in read.iter().zip(&shares) {
-                        // Half a step by rounding. The largest also takes what all roundings add up to, in whole steps.
-                        let half = 0.5 * step(*share, storage);
-                        let excess: f64 = shares.iter().map(|share| 0.5 * step(*share, storage)).sum();
-                        let given = if *share == largest { excess + 2.0 * half } else { 0.0 };
-                        assert!((read - share).abs() <= half + given, "{storage:?} {share} {read}");
-                    }
+        for count in [1, 3, 7, 15] {
+            for _ in 0..2000 {
+                let raw: Vec<f64> = (0..count).map(|_| unit().powi(6)).collect();
+                let whole: f64 = raw.iter().sum();
+                let shares: Vec<f64> = raw.iter().map(|share| share / whole).collect();
+                let read: Vec<f64> = indicators(&shares).iter().map(|bits| f16::from_bits(*bits).to_f64()).collect();
+                assert!(read.iter().sum::<f64>() <= 1.0, "{read:?}");
+                let largest = shares.iter().copied().fold(0.0, f64::max);
+                for (read, share) in read.iter().zip(&shares) {
+                    // Half a step by rounding. The largest also takes what all roundings add up to, in whole steps.
+                    let half = 0.5 * step(*share);
+                    let excess: f64 = shares.iter().map(|share| 0.5 * step(*share)).sum();
+                    let given = if *share == largest { excess + 2.0 * half } else { 0.0 };
+                    assert!((read - share).abs() <= half + given, "{share} {read}");
                 }
             }
         }
     }
 
-    /// Distance of neighbouring numbers at `value`, at most.
-    fn step(value: f64, storage: Storage) -> f64 {
-        match storage {
-            Storage::F16 => (value / 1024.0).max(6e-8),
-            Storage::F32 => (value / 8_388_608.0).max(1e-40),
-            Storage::Unorm16 => 1.0 / 65535.0,
-        }
+    /// Distance of neighbouring half floats at `value`, at most.
+    fn step(value: f64) -> f64 {
+        (value / 1024.0).max(6e-8)
     }
 
     #[test]

@@ -2,8 +2,10 @@
 
 use super::baked::Environment;
 use crate::error::{BakeError, Result};
-use crate::pack_access::{bytes, names_with, parameters, records};
-use glint_formats::environment::{ALBEDO, COLOURS, EnvironmentParams, INDICATORS, PARAMS, RADIANCE};
+use crate::pack_access::{names_with, parameters, records};
+use glint_formats::environment::{
+    ALBEDO, COLOURS, EnvironmentParams, EnvironmentUniform, INDICATORS, PARAMS, RADIANCE, UNIFORM,
+};
 use glint_formats::{Codec, Pack, Section};
 
 /// The sections of an environment under `name`, compressed when `codec` says so.
@@ -11,11 +13,18 @@ pub fn to_sections(name: &str, environment: &Environment, codec: Codec) -> Vec<S
     let params = &environment.params;
     let mut sections = vec![
         Section::parameters(PARAMS, name, params),
-        Section::texture(RADIANCE, name, params.radiance_resource(), environment.radiance.clone()),
+        Section::buffer(UNIFORM, name, &[environment.uniform]),
+        Section::texture(
+            RADIANCE,
+            name,
+            params.radiance_resource(),
+            bytemuck::cast_slice(&environment.radiance).to_vec(),
+        ),
     ];
     if params.indicator_layers() > 0 {
         let resource = params.indicators_resource();
-        sections.push(Section::texture(INDICATORS, name, resource, environment.indicators.clone()));
+        let payload = bytemuck::cast_slice(&environment.indicators).to_vec();
+        sections.push(Section::texture(INDICATORS, name, resource, payload));
     }
     if params.coloured {
         let payload = bytemuck::cast_slice(&environment.colours).to_vec();
@@ -31,23 +40,26 @@ pub fn to_sections(name: &str, environment: &Environment, codec: Codec) -> Vec<S
 
 /// Reads the environment `name`. The pack must have passed verification; errors name what is missing or damaged.
 pub fn from_pack(pack: &Pack, name: &str) -> Result<Environment> {
-    let params: EnvironmentParams = parameters(pack, PARAMS, name)?;
+    let params = params(pack, name)?;
+    let Some(uniform) = records::<EnvironmentUniform>(pack, UNIFORM, name)?.first().copied() else {
+        return Err(BakeError::BadInput(format!("'{name}': expected a record of {UNIFORM}, found none")));
+    };
     let mut environment = Environment {
-        radiance: bytes(pack, RADIANCE, name)?,
+        radiance: records(pack, RADIANCE, name)?,
         indicators: Vec::new(),
         colours: Vec::new(),
         albedo: records(pack, ALBEDO, name)?,
-        uniform: params.uniform(),
+        uniform,
         params,
     };
     let params = &environment.params;
     let mut lengths = vec![
-        (params.radiance_resource(), environment.radiance.len()),
+        (params.radiance_resource(), 2 * environment.radiance.len()),
         (params.albedo_resource(), 2 * environment.albedo.len()),
     ];
     if params.indicator_layers() > 0 {
-        environment.indicators = bytes(pack, INDICATORS, name)?;
-        lengths.push((params.indicators_resource(), environment.indicators.len()));
+        environment.indicators = records(pack, INDICATORS, name)?;
+        lengths.push((params.indicators_resource(), 2 * environment.indicators.len()));
     }
     if params.coloured {
         environment.colours = records(pack, COLOURS, name)?;
@@ -59,6 +71,14 @@ pub fn from_pack(pack: &Pack, name: &str) -> Result<Environment> {
         }
     }
     Ok(environment)
+}
+
+/// Reads the parameters of the environment `name`.
+///
+/// # Errors
+/// `BadInput` for a section that is missing or damaged.
+pub fn params(pack: &Pack, name: &str) -> Result<EnvironmentParams> {
+    parameters(pack, PARAMS, name)
 }
 
 /// Names of the environments in a pack.

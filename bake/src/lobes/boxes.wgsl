@@ -241,9 +241,9 @@ fn glint_lobes_boxes(map: GlintLobesMap, query: GlintLobesQuery, edge: f32, reac
         }
         y += edge;
     }
-    let found = sum.xy * box.share * vec2f(GLINT_LOBES_PEAK, 1.0);
+    let read = sum.xy * box.share * vec2f(GLINT_LOBES_PEAK, 1.0);
     if glint_lobes_rim && sum.z > 0.0 {
-        return found + vec2f(glint_lobes_cut_boxes(map, query, edge, reach), 0.0);
+        return read + vec2f(glint_lobes_cut_boxes(map, query, edge, reach), 0.0);
     }
-    return found;
+    return read;
 }

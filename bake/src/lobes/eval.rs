@@ -25,7 +25,7 @@ pub struct Frame {
 
 /// What lobes are seen by: a footprint and the intrinsic roughness.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Query {
+pub(crate) struct Query {
     /// The footprint.
     pub frame: Frame,
     /// The major axis over its standard deviation: its product with an offset is in standard deviations. Zero, like
@@ -39,7 +39,7 @@ pub struct Query {
 
 /// A lobe: a 4D Gaussian over position and projected normal, without the intrinsic roughness.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lobe {
+pub(crate) struct Lobe {
     /// Weight in texels; 0 is no lobe.
     pub weight: f32,
     /// Mean position from the cell's corner, in texels.
@@ -57,7 +57,7 @@ pub struct Lobe {
 /// An ellipse around a footprint, for the ranges of x that it has at some heights. At height y above the middle its own middle
 /// lies at `slope` y, and half its width is `narrow` √(`top`² − y²).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ellipse {
+pub(crate) struct Ellipse {
     /// Centre, in texels.
     pub mean: Vec2,
     /// Half its height, in texels.
@@ -87,7 +87,7 @@ pub struct SeenLobe {
 
 /// A bilinear patch of the filtered map at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Patch {
+pub(crate) struct Patch {
     /// Projected normal.
     pub normal: Vec2,
     /// Jacobian ∂s/∂u per texel.
@@ -97,7 +97,7 @@ pub struct Patch {
 }
 
 /// Footprints are taken to be at least this wide, in texels: below it positions have no digits left.
-pub const LEAST_SIGMA: f32 = 1.0 / 4096.0;
+pub(crate) const LEAST_SIGMA: f32 = 1.0 / 4096.0;
 /// Squared distance, in standard deviations, beyond which a lobe is nothing.
 pub(crate) const CUT: f32 = 30.0;
 
@@ -118,7 +118,7 @@ impl BakedLobes {
 }
 
 /// A query from its parts.
-pub fn query(frame: Frame, roughness: f32) -> Query {
+pub(crate) fn query(frame: Frame, roughness: f32) -> Query {
     Query { frame, along: frame.axis / frame.major, across: frame.axis.perp() / frame.minor, roughness }
 }
 
@@ -263,42 +263,10 @@ pub(crate) fn box_lobe(place: &Patch, size: Vec2) -> Lobe {
 }
 
 impl SeenLobe {
-    /// Density at `s`, times the share; 0 where the squared distance from the mean is more than [`CUT`].
+    /// Density at `s`, times the share; 0 farther than √30 standard deviations from the mean.
     pub fn density(&self, s: Vec2) -> f32 {
         let d = s - self.mean;
         let q = self.inverse[0] * d.x * d.x + 2.0 * self.inverse[1] * d.x * d.y + self.inverse[2] * d.y * d.y;
         if q > CUT { 0.0 } else { self.share * self.peak * libm::expf(-0.5 * q) }
-    }
-}
-
-/// Signs of a lobe's quarters along the columns of its factor.
-pub(crate) const QUARTERS: [Vec2; 4] =
-    [Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0), Vec2::new(-1.0, 1.0), Vec2::new(1.0, 1.0)];
-
-/// From a lobe's mean to that of a quarter. Four quarters have the lobe's moments, as the quarters of a box have.
-pub(crate) fn quarter_offset(lobe: &Lobe, signs: Vec2) -> Vec2 {
-    const APART: f32 = 0.866_025_4; // √3 / 2
-    lobe.factor * (signs * APART)
-}
-
-/// The part of a lobe that is made of some of its quarters: weight, mean and standard deviations along both columns are theirs.
-pub(crate) fn part_of(lobe: &Lobe, quarters: [bool; 4]) -> Lobe {
-    let (mut count, mut signs) = (0.0, Vec2::ZERO);
-    for k in 0..4 {
-        if quarters[k] {
-            count += 1.0;
-            signs += QUARTERS[k];
-        }
-    }
-    let mean = if count > 0.0 { signs / count } else { Vec2::ZERO };
-    let d = quarter_offset(lobe, mean);
-    // A quarter of the variance lies within quarters, the rest between their means.
-    let narrow = |m: f32| (1.0 - 0.75 * m * m).sqrt();
-    Lobe {
-        weight: 0.25 * count * lobe.weight,
-        position: lobe.position + d,
-        normal: lobe.normal + lobe.jacobian * d,
-        factor: Mat2::from_cols(lobe.factor.x_axis * narrow(mean.x), lobe.factor.y_axis * narrow(mean.y)),
-        ..*lobe
     }
 }

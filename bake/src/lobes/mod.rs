@@ -3,7 +3,7 @@
 //!
 //! [`mod@bake`] turns texels into lobes and builds the MIP, [`merge`] reduces the lobes of a cell, [`quantise`] packs them.
 //! [`query`] finds what a footprint sees as a sum over placed cells and [`boxes`], [`eval`] is the arithmetic of one lobe;
-//! [`reference`] and [`reference_lobes`] are the same by definition, in f64, and [`quality`] the difference. [`sections`] is all as
+//! [`reference`] is the same by definition, in f64, and [`quality`] the difference. [`sections`] is all as
 //! a pack.
 
 pub(crate) mod bake;
@@ -19,7 +19,6 @@ pub mod quality;
 mod quantise;
 pub mod query;
 pub mod reference;
-pub mod reference_lobes;
 pub mod sections;
 
 crate::shader::shaders!("lobes": "eval", "query", "boxes", "packed", "half");

@@ -2,6 +2,7 @@
 
 use crate::error::{BakeError, Result};
 use crate::normal_map::NormalMap;
+use glint_formats::binding::MAX_BINDING_BYTES;
 use glint_formats::lobes::{
     Filter, LobeStorage, LobesUniform, MAX_LAST_CELLS, MAX_LOBES_PER_CELL, MAX_TEXTURE_SIZE, Merge,
 };
@@ -9,16 +10,17 @@ use glint_formats::lobes::{
 /// Smallest and largest intrinsic roughness σ_r.
 pub const ROUGHNESS_RANGE: (f64, f64) = (1e-4, 1.0);
 /// Smallest and largest edge of the finest cells, in texels.
-pub const CELL_RANGE: (u32, u32) = (4, 64);
+pub(crate) const CELL_RANGE: (u32, u32) = (4, 64);
 /// Most texels of a map: their normals fill the largest binding that every GPU has.
-pub const MAX_TEXELS: u64 = 4096 * 4096;
+pub(crate) const MAX_TEXELS: u64 = 4096 * 4096;
 /// Bytes of a texel's normal and that below it.
 pub(crate) const TEXEL_BYTES: u64 = size_of::<[u32; 2]>() as u64;
 
 /// How the map's normals are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NormalsChoice {
-    /// 8 bits where they round by less than [`ROUNDING`] σ_r (root mean square), else 16.
+    /// 8 bits where they round by less than 0.03 σ_r (root mean square), else 16. A GPU holds both in words of 32 bits;
+    /// compressed files are smaller with 8.
     Auto,
     /// 8 bits a channel.
     Unorm8,
@@ -33,16 +35,16 @@ pub fn default_cell(width: u32, height: u32) -> u32 {
 }
 
 /// Rounding of 8-bit normals that is let pass, over σ_r, root mean square.
-pub const ROUNDING: f64 = 0.03;
+pub(crate) const ROUNDING: f64 = 0.03;
 
-/// Options of one map's bake.
+/// Options of one map's bake. Errors call them `roughness`, `k`, `cell` and `seeds`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LobesOptions {
-    /// Intrinsic roughness σ_r that lobes are merged for: a standard deviation in the projected-normal disk.
+    /// Intrinsic roughness σ_r that lobes are merged for, in [`ROUGHNESS_RANGE`]: a standard deviation in the projected-normal disk.
     pub roughness: f64,
-    /// Lobes a cell.
+    /// Lobes a cell, `k`: 1 to [`MAX_LOBES_PER_CELL`].
     pub lobes_per_cell: u32,
-    /// Edge of the finest level's cells in texels, a power of two.
+    /// Edge of the finest level's cells in texels, `cell`: a power of two from 4 to 64.
     pub cell_texels: u32,
     /// How lobes of a cell are reduced.
     pub merge: Merge,
@@ -81,15 +83,21 @@ impl LobesOptions {
     /// Whether the options make sense, and for this map.
     ///
     /// # Errors
-    /// `BadOption` when one is out of range, `LimitExceeded` when the map is too large.
+    /// `BadOption` when one is out of range, `LimitExceeded` when the map is too large, or its lobes are too many for a GPU.
     pub fn check(&self, map: &NormalMap) -> Result<()> {
         self.validate()?;
         let texels = map.width as u64 * map.height as u64;
         if texels > MAX_TEXELS || map.width.max(map.height) > MAX_TEXTURE_SIZE {
             return Err(BakeError::LimitExceeded(format!(
-                "a map of {} × {} is larger than the {MAX_TEXELS} texels, {MAX_TEXTURE_SIZE} along an edge, that lobes are \
-                 meant for; use a part of it with --crop WxH+X+Y",
+                "map: expected {MAX_TEXELS} texels at most, {MAX_TEXTURE_SIZE} along an edge, found {} × {}; give a part of it",
                 map.width, map.height
+            )));
+        }
+        let bytes = self.lobe_bytes(map.width, map.height);
+        if bytes > MAX_BINDING_BYTES {
+            return Err(BakeError::LimitExceeded(format!(
+                "lobes: expected {MAX_BINDING_BYTES} bytes at most, what every GPU binds, found {bytes}; give larger cells, or \
+                 fewer lobes a cell"
             )));
         }
         Ok(())
@@ -97,6 +105,12 @@ impl LobesOptions {
 
     /// Bytes of the uniform, lobes and normals of a map of this size.
     pub fn most_bytes(&self, width: u32, height: u32) -> u64 {
+        let texels = (width as u64 * height as u64).next_multiple_of(2) * TEXEL_BYTES;
+        size_of::<LobesUniform>() as u64 + self.lobe_bytes(width, height) + texels
+    }
+
+    /// Bytes of the lobes of all levels of a map of this size.
+    fn lobe_bytes(&self, width: u32, height: u32) -> u64 {
         let mut cell = self.cell_texels;
         let mut cells = 0;
         loop {
@@ -107,8 +121,7 @@ impl LobesOptions {
             }
             cell *= 2;
         }
-        let texels = (width as u64 * height as u64).next_multiple_of(2) * TEXEL_BYTES;
-        size_of::<LobesUniform>() as u64 + cells * self.lobes_per_cell as u64 * self.storage.stride() as u64 + texels
+        cells * self.lobes_per_cell as u64 * self.storage.stride() as u64
     }
 
     /// Whether the options make sense.
@@ -119,17 +132,17 @@ impl LobesOptions {
         let bad = |message: String| Err(BakeError::BadOption(message));
         let (low, high) = ROUGHNESS_RANGE;
         if !(low..=high).contains(&self.roughness) {
-            return bad(format!("--roughness: expected {low} to {high}, found {}", self.roughness));
+            return bad(format!("roughness: expected {low} to {high}, found {}", self.roughness));
         }
         if !(1..=MAX_LOBES_PER_CELL).contains(&self.lobes_per_cell) {
-            return bad(format!("--k: expected 1 to {MAX_LOBES_PER_CELL} lobes, found {}", self.lobes_per_cell));
+            return bad(format!("k: expected 1 to {MAX_LOBES_PER_CELL} lobes, found {}", self.lobes_per_cell));
         }
         let (low, high) = CELL_RANGE;
         if !(low..=high).contains(&self.cell_texels) || !self.cell_texels.is_power_of_two() {
-            return bad(format!("--cell: expected a power of two from {low} to {high}, found {}", self.cell_texels));
+            return bad(format!("cell: expected a power of two from {low} to {high}, found {}", self.cell_texels));
         }
         if ![1, 4].contains(&self.seeds) {
-            return bad(format!("--seeds: expected 1 or 4, found {}", self.seeds));
+            return bad(format!("seeds: expected 1 or 4, found {}", self.seeds));
         }
         Ok(())
     }

@@ -164,7 +164,7 @@ pub fn footprint_errors(
 /// one is 0.
 pub fn difference(exact: &GridNdf, seen: &Gathered) -> (f64, f64) {
     let grid = &exact.grid;
-    let mut found = vec![0.0f64; exact.values.len()];
+    let mut values = vec![0.0f64; exact.values.len()];
     let mut off_grid = 0.0;
     // A lobe of so small a share is nothing, and a query may hold as many of them as others.
     let least = 1e-7 * seen.lobes.iter().fold(0.0, |most: f32, lobe| most.max(lobe.share));
@@ -186,7 +186,7 @@ pub fn difference(exact: &GridNdf, seen: &Gathered) -> (f64, f64) {
                 }
                 let value = lobe.density(s.as_vec2()) as f64;
                 if (0..grid.width as i64).contains(&i) && (0..grid.height as i64).contains(&j) {
-                    found[j as usize * grid.width + i as usize] += value;
+                    values[j as usize * grid.width + i as usize] += value;
                 } else {
                     off_grid += value;
                 }
@@ -195,45 +195,57 @@ pub fn difference(exact: &GridNdf, seen: &Gathered) -> (f64, f64) {
     }
     let cell = grid.spacing * grid.spacing;
     let whole = exact.values.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-    let integral = (found.iter().sum::<f64>() + off_grid) * cell;
-    (e1(&found, &exact.values) + off_grid / whole, (integral - 1.0).abs())
+    let integral = (values.iter().sum::<f64>() + off_grid) * cell;
+    (e1(&values, &exact.values) + off_grid / whole, (integral - 1.0).abs())
 }
 
-/// Intrinsic roughnesses that are tried, the widest first.
-const ROUGHNESSES: [f32; 7] = [0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005];
+/// Intrinsic roughnesses that [`BakedLobes::rim_roughness`] tries, ascending.
+const ROUGHNESSES: [f32; 7] = [0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
 
 impl BakedLobes {
     /// Share of a map that its lobes put beyond the rim of the disk of normals, with `roughness` as the intrinsic one: the largest of
-    /// the stored levels' and of the texels'. Densities get that mass back ([`inside_disk`]), which takes a sum over strips.
-    fn beyond_rim(&self, roughness: f32) -> f32 {
-        let frame = Frame { mean: Vec2::ZERO, axis: Vec2::X, major: f32::INFINITY, minor: f32::INFINITY };
-        let alike = query(frame, roughness);
+    /// the texels' and of the stored levels'; any number above `most` where it is more than that. Densities get that mass back
+    /// ([`inside_disk`]), which takes a sum over strips.
+    fn beyond_rim(&self, roughness: f32, most: f32) -> f32 {
         let intrinsic = Vec3::new(roughness * roughness, 0.0, roughness * roughness);
         let of_texel = |s: Vec2| if near_rim(s, intrinsic) { inside_disk(s, intrinsic) } else { 1.0 };
-        let of_level = |level: usize| {
-            let level = self.level(level);
+        let (width, height) = (self.params.width as i32, self.params.height as i32);
+        let texels = (0..height).flat_map(|j| (0..width).map(move |i| (i, j)));
+        let parts = texels.map(|(i, j)| (1.0, of_texel(self.texel(i, j))));
+        let mut share = share_beyond(parts, width as f64 * height as f64, most);
+        let frame = Frame { mean: Vec2::ZERO, axis: Vec2::X, major: f32::INFINITY, minor: f32::INFINITY };
+        let alike = query(frame, roughness);
+        for index in (0..self.params.levels.len()).rev() {
+            if share > most {
+                break;
+            }
+            let level = self.level(index);
             let count = level.cells_x * level.cells_y * self.params.lobes_per_cell;
             let lobes = (level.first_lobe..level.first_lobe + count).map(|index| self.lobe(&level, index));
-            share_beyond(lobes.map(|lobe| (lobe.weight, seen(&alike, &lobe, Vec2::ZERO).inside)))
-        };
-        let texels = (0..self.params.height as i32).flat_map(|j| (0..self.params.width as i32).map(move |i| (i, j)));
-        let of_texels = share_beyond(texels.map(|(i, j)| (1.0, of_texel(self.texel(i, j)))));
-        (0..self.params.levels.len()).map(of_level).fold(of_texels, f32::max)
+            let parts = lobes.map(|lobe| (lobe.weight, seen(&alike, &lobe, Vec2::ZERO).inside));
+            share = share.max(share_beyond(parts, f64::from(count) * f64::from(level.weight_scale), most));
+        }
+        share
     }
 
-    /// The widest of a few intrinsic roughnesses at which at most `share` of the map lies beyond the rim; 0 if it is more at all of
-    /// them.
+    /// The widest of a few intrinsic roughnesses at which at most `share` of the map lies beyond the rim; 0 if it is more at the least
+    /// of them.
     pub(crate) fn rim_roughness(&self, share: f32) -> f32 {
-        ROUGHNESSES.into_iter().find(|roughness| self.beyond_rim(*roughness) <= share).unwrap_or(0.0)
+        let within = |roughness: &f32| self.beyond_rim(*roughness, share) <= share;
+        ROUGHNESSES.into_iter().take_while(within).last().unwrap_or(0.0)
     }
 }
 
-/// Share beyond the rim of parts, each a weight and its mass inside.
-fn share_beyond(parts: impl Iterator<Item = (f32, f32)>) -> f32 {
+/// Share beyond the rim of parts, each a weight and its mass inside; `heaviest` is a weight that all together do not exceed. Any number
+/// above `most` as soon as it must be more than that.
+fn share_beyond(parts: impl Iterator<Item = (f32, f32)>, heaviest: f64, most: f32) -> f32 {
     let (mut beyond, mut whole) = (0.0, 0.0);
     for (weight, inside) in parts {
         beyond += f64::from(weight * (1.0 - inside).max(0.0));
         whole += f64::from(weight);
+        if beyond > f64::from(most) * heaviest {
+            return f32::INFINITY;
+        }
     }
     if whole > 0.0 { (beyond / whole) as f32 } else { 0.0 }
 }
@@ -254,17 +266,17 @@ mod tests {
 
     #[test]
     fn gentle_maps_stay_inside_and_steep_ones_do_not() {
-        assert_eq!(ramps(0.0).beyond_rim(0.02), 0.0);
+        assert_eq!(ramps(0.0).beyond_rim(0.02, 1.0), 0.0);
         let (gentle, steep) = (ramps(0.5), ramps(0.99));
-        assert!(gentle.beyond_rim(0.05) < 1e-5, "{}", gentle.beyond_rim(0.05));
-        assert!(steep.beyond_rim(0.05) > 1e-2, "{}", steep.beyond_rim(0.05));
+        assert!(gentle.beyond_rim(0.05, 1.0) < 1e-5, "{}", gentle.beyond_rim(0.05, 1.0));
+        assert!(steep.beyond_rim(0.05, 1.0) > 1e-2, "{}", steep.beyond_rim(0.05, 1.0));
         assert!(gentle.rim_roughness(1e-4) >= 0.05 && steep.rim_roughness(1e-4) == 0.0);
     }
 
     #[test]
     fn more_lies_beyond_the_rim_of_rougher_facets() {
         let baked = ramps(0.7);
-        let shares = [0.01, 0.05, 0.1, 0.2, 0.5].map(|roughness| baked.beyond_rim(roughness));
+        let shares = [0.01, 0.05, 0.1, 0.2, 0.5].map(|roughness| baked.beyond_rim(roughness, 1.0));
         assert!(shares.windows(2).all(|pair| pair[0] <= pair[1]), "{shares:?}");
         // A Gaussian of σ around the middle has exp(-1 / 2σ²) beyond the rim; farther out it has more.
         assert!(shares[4] > 0.135 && shares[4] < 0.5, "{shares:?}");

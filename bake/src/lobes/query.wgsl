@@ -158,7 +158,7 @@ fn glint_lobes_cut_lobes(
 }
 
 // Density and share of the lobes of a cell whose first lobe is `first` and whose corner lies at `corner`. No lobe waits for
-// what was found of the one before it.
+// the one before it.
 fn glint_lobes_cell(
     map: GlintLobesMap,
     query: GlintLobesQuery,
@@ -183,21 +183,21 @@ fn glint_lobes_cell(
 // once, as a footprint does that sees every place alike.
 fn glint_lobes_cells(
     map: GlintLobesMap,
-    given: GlintLobesQuery,
+    query: GlintLobesQuery,
     level: GlintLobesLevel,
     reach: f32,
     whole: bool,
 ) -> vec2f {
     var size = vec2f(f32(map.width), f32(map.height));
     let edge = f32(level.cell_texels);
-    var query = given;
+    var placed = query;
     if whole {
         size = vec2f(f32(level.cells_x), f32(level.cells_y)) * edge;
-        query.frame.mean = 0.5 * size;
-        query.along = vec2f(0.0);
-        query.across = vec2f(0.0);
+        placed.frame.mean = 0.5 * size;
+        placed.along = vec2f(0.0);
+        placed.across = vec2f(0.0);
     }
-    let frame = query.frame;
+    let frame = placed.frame;
     // From a little inside the first cell to a little inside the last.
     let all = 0.5 * size - 0.25;
     let ellipse = glint_lobes_ellipse(frame, reach);
@@ -212,7 +212,7 @@ fn glint_lobes_cells(
         if slot.copy * size.x + f32(slot.index) * edge <= span.y {
             let corner = vec2f(f32(slot.index), f32(row.index)) * edge + vec2f(slot.copy, row.copy) * size;
             let first = level.first_lobe + (row.index * level.cells_x + slot.index) * map.lobes_per_cell;
-            sum += glint_lobes_cell(map, query, level, first, corner);
+            sum += glint_lobes_cell(map, placed, level, first, corner);
         }
         slot = glint_lobes_next_slot(slot, level.cells_x);
         if !(slot.copy * size.x + f32(slot.index) * edge <= span.y) {

@@ -3,73 +3,39 @@
 //! Xing et al. 2024, section 5.2: level l divides the example in tiles of 2^(l+1) texels, down to one tile. Examples of
 //! any size are allowed; tiles at the right and lower edge are cut.
 
-use super::disk::LobeNorm;
+use super::baked::{BakedNdfMaps, Material};
+use super::fine_grid::LobeNorm;
 use super::micro_normals::TexelRect;
+use super::options::{FINEST_TILE, NdfMapsOptions, Options, WORST_OF_MEAN};
+use super::placement;
 use super::tile_fit::{self, FitSettings, FittedTile};
-use crate::error::{BakeError, Result};
+use crate::error::Result;
 use crate::normal_map::NormalMap;
 use crate::progress::Progress;
 use crate::quality::metrics::Summary;
-use glint_formats::ndf_maps::{DensityStorage, Level, MeasuredError, NdfMapsParams, TileRecord};
+use glint_formats::ndf_maps::{Level, MeasuredError, NdfMapsParams, TileRecord};
 use rayon::prelude::*;
 
-/// Texels of an example at most; larger maps belong to other methods, or are cropped.
-pub const MAX_EXAMPLE_TEXELS: u64 = 128 * 128;
-/// Smallest and largest intrinsic roughness σ_r.
-pub const ROUGHNESS_RANGE: (f64, f64) = (1e-4, 1.0);
-
-/// Error of one tile at most, relative to what is asked of the mean.
-pub const WORST_OF_MEAN: f64 = 3.0;
-/// Edge of the finest tiles.
-pub const FINEST_TILE: u32 = 2;
 /// Part of the error asked for that the bake uses up: its fine grid agrees with the exact integral to a few per cent of
 /// the error that it measures.
 const USED: f64 = 0.95;
 
-/// Options of one example's bake.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NdfMapsOptions {
-    /// Intrinsic roughness σ_r, a standard deviation in the projected-normal disk.
-    pub roughness: f64,
-    /// Mean E₁ over tiles; no tile has more than three times that (ignored by the paper's storage).
-    pub max_error: f64,
-    /// How densities are stored.
-    pub storage: DensityStorage,
-    /// Finer tiles than this, in texels, are left out, but for the one tile that covers the example. Footprints that are
-    /// too small for the tiles that are left see lobes, which are many under more than two texels.
-    pub min_tile: u32,
+/// Bakes a material: the maps of an example and its placement.
+///
+/// # Errors
+/// An option out of range, transforms that would push normals over the horizon, or an example that is too large.
+pub fn bake(map: &NormalMap, options: &Options, progress: &dyn Progress) -> Result<Material> {
+    let placement = placement::place(map, options.maps.roughness, &options.placement)?;
+    Ok(Material { maps: bake_maps(map, &options.maps, progress)?, placement })
 }
 
-impl Default for NdfMapsOptions {
-    fn default() -> NdfMapsOptions {
-        NdfMapsOptions { roughness: 0.02, max_error: 0.01, storage: DensityStorage::SqrtU8, min_tile: FINEST_TILE }
-    }
-}
-
-/// One example's NDF maps, ready for a pack.
-#[derive(Clone, Debug)]
-pub struct BakedNdfMaps {
-    /// Parameters.
-    pub params: NdfMapsParams,
-    /// One record a tile.
-    pub tiles: Vec<TileRecord>,
-    /// Encoded density texels of all tiles.
-    pub density: Vec<u8>,
-    /// Projected normals of the example, snorm16, row-major.
-    pub normals: Vec<[i16; 2]>,
-}
-
-impl BakedNdfMaps {
-    /// Bytes that a renderer keeps: tile records, densities and normals.
-    pub fn gpu_bytes(&self) -> usize {
-        self.tiles.len() * size_of::<TileRecord>() + self.density.len() + self.normals.len() * 4
-    }
-}
-
-/// Bakes one example. Errors: an option out of range, or an example that is too large.
-pub fn bake(map: &NormalMap, options: &NdfMapsOptions, progress: &dyn Progress) -> Result<BakedNdfMaps> {
-    check(map, options)?;
-    let levels = levels_from(map.width, map.height, options.min_tile);
+/// Bakes the maps of one example.
+///
+/// # Errors
+/// An option out of range, or an example that is too large.
+pub fn bake_maps(map: &NormalMap, options: &NdfMapsOptions, progress: &dyn Progress) -> Result<BakedNdfMaps> {
+    options.check(map)?;
+    let levels = levels(map.width, map.height, options.min_tile);
     let rects: Vec<TexelRect> = levels.iter().flat_map(|level| tile_rects(map, level)).collect();
     let settings = FitSettings {
         roughness: options.roughness,
@@ -154,38 +120,9 @@ fn choose(candidates: Vec<Vec<FittedTile>>, max_error: f64) -> Vec<FittedTile> {
     candidates.into_iter().map(|mut tiles| tiles.swap_remove(pick(&tiles, high))).collect()
 }
 
-fn check(map: &NormalMap, options: &NdfMapsOptions) -> Result<()> {
-    let (lo, hi) = ROUGHNESS_RANGE;
-    if !(lo..=hi).contains(&options.roughness) {
-        return Err(BakeError::BadOption(format!("intrinsic roughness {} is outside {lo} … {hi}", options.roughness)));
-    }
-    if options.max_error.is_nan() || options.max_error <= 0.0 {
-        return Err(BakeError::BadOption(format!("maximum error {} is not above 0", options.max_error)));
-    }
-    if !options.min_tile.is_power_of_two() || options.min_tile < FINEST_TILE {
-        return Err(BakeError::BadOption(format!(
-            "smallest tile {} is not a power of two from 2 on",
-            options.min_tile
-        )));
-    }
-    let texels = map.width as u64 * map.height as u64;
-    if texels > MAX_EXAMPLE_TEXELS {
-        return Err(BakeError::LimitExceeded(format!(
-            "an example of {} × {} has {texels} texels, more than the {MAX_EXAMPLE_TEXELS} that NDF maps are meant for; \
-             bake a part of it with --crop WxH+X+Y",
-            map.width, map.height
-        )));
-    }
-    Ok(())
-}
-
-/// Levels of a `width` × `height` example: tiles of 2, 4, 8, … texels, up to the one tile that covers it.
-pub fn levels_of(width: u32, height: u32) -> Vec<Level> {
-    levels_from(width, height, FINEST_TILE)
-}
-
-/// The same from tiles of `min_tile` texels (a power of two) on; always the last level.
-pub fn levels_from(width: u32, height: u32, min_tile: u32) -> Vec<Level> {
+/// Levels of a `width` × `height` example: tiles of `min_tile` (a power of two), twice that, … texels, up to the one tile that
+/// covers it, which is always the last level.
+pub fn levels(width: u32, height: u32, min_tile: u32) -> Vec<Level> {
     let covering = width.max(height).next_power_of_two();
     let mut levels = Vec::new();
     let (mut tile_texels, mut first_tile) = (min_tile.min(covering).max(FINEST_TILE), 0);
@@ -201,7 +138,7 @@ pub fn levels_from(width: u32, height: u32, min_tile: u32) -> Vec<Level> {
 }
 
 /// The texels of each tile of a level, row by row.
-pub fn tile_rects(map: &NormalMap, level: &Level) -> Vec<TexelRect> {
+pub(super) fn tile_rects(map: &NormalMap, level: &Level) -> Vec<TexelRect> {
     let mut rects = Vec::new();
     for y in 0..level.tiles_y {
         for x in 0..level.tiles_x {

@@ -1,24 +1,38 @@
-//! Evaluation of packed NDF maps, f32, as a shader would do it: one tile, one lobe, and the sum of a footprint's terms.
+//! Evaluation of NDF maps in f32, as `eval.wgsl` does it: one tile, one lobe, and the sum of a footprint's terms.
 //!
 //! Xing et al. 2024, section 6.3: the P-NDF is the sum of the NDFs of the tiles under the footprint; below the finest
 //! tile, of Gaussian lobes (Eq. 1). Lobes are not stored: position, normal and Jacobian come from the example's normals.
 
-use super::bake::BakedNdfMaps;
-use super::placement::BakedPlacement;
-use super::spline::Taps;
+use super::baked::{BakedNdfMaps, Material};
+use super::ellipse::REACH;
 use crate::erf::erf;
 use crate::wrap::{filtered_texels, wrapped};
 use glam::{IVec2, Mat2, Vec2};
 use glint_formats::ndf_maps::DensityStorage;
 use half::f16;
 
-/// A material as a renderer holds it: one example's maps and how they cover the surface.
-#[derive(Clone, Debug)]
-pub struct Material {
-    /// NDF maps of the example.
-    pub maps: BakedNdfMaps,
-    /// Placement on the surface.
-    pub placement: BakedPlacement,
+/// Choice between speed and accuracy at run time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EvalSettings {
+    /// Largest tile in standard deviations of the footprint's minor axis.
+    pub tile_sigmas: f32,
+    /// Largest box that is seen as one lobe, in standard deviations of the footprint's minor axis.
+    pub lobe_sigmas: f32,
+    /// Tiles, lobes or sub-regions in the area of the footprint's ellipse, at most, but for those that sub-regions cut; a footprint that
+    /// would need more sees coarser ones.
+    pub max_terms: u32,
+    /// How often a tile that a sub-region shows only in part is split.
+    pub splits: u32,
+    /// Pieces lie within this many standard deviations of the footprint's centre; 2 % of its mass is beyond 2.8, 14 % beyond 2.
+    pub reach: f32,
+    /// Places along a footprint's minor axis where a stochastic surface is seen, each as one tile; 0 for all tiles of all sub-regions.
+    pub probes: u32,
+}
+
+impl Default for EvalSettings {
+    fn default() -> EvalSettings {
+        EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 0.75, max_terms: 128, splits: 1, reach: REACH, probes: 0 }
+    }
 }
 
 /// A tile's share of a footprint.
@@ -74,6 +88,37 @@ impl Terms {
     }
 }
 
+/// Terms of a footprint with the sum of their shares, not yet divided by it.
+#[derive(Default)]
+pub(super) struct Gathered {
+    pub(super) terms: Terms,
+    pub(super) share: f32,
+}
+
+impl Gathered {
+    pub(super) fn add_tile(&mut self, term: TileTerm) {
+        self.share += term.weight;
+        self.terms.tiles.push(term);
+    }
+}
+
+/// The three splines that reach a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Taps {
+    /// Index of the first.
+    pub(super) first: i32,
+    /// Their values; they sum to 1.
+    pub(super) weights: [f32; 3],
+}
+
+/// Quadratic B-splines at `p`, in node distances from node 0: those of the nodes ⌊p + ½⌋ − 1 and the next two.
+pub(super) fn spline(p: f32) -> Taps {
+    let middle = (p + 0.5).floor();
+    let f = p - middle;
+    let weights = [0.5 * (0.5 - f) * (0.5 - f), 0.75 - f * f, 0.5 * (0.5 + f) * (0.5 + f)];
+    Taps { first: middle as i32 - 1, weights }
+}
+
 /// Row-major matrix of the pack.
 pub fn matrix(rows: [f32; 4]) -> Mat2 {
     Mat2::from_cols(Vec2::new(rows[0], rows[2]), Vec2::new(rows[1], rows[3]))
@@ -91,57 +136,16 @@ impl Material {
             sum += term.weight * self.maps.tile_density(term.tile, to_local * s);
         }
         for lobe in &terms.lobes {
-            sum += lobe.density(s);
+            sum += lobe.lobe_density(s);
         }
         sum
     }
 }
 
-impl Material {
-    /// Whether the query `s` lies in the box of a term's tile, so that texels are read for it.
-    pub fn reads(&self, term: &TileTerm, s: Vec2) -> bool {
-        let to_local = matrix(self.placement.palette[term.class as usize].normal_to_local);
-        self.maps.tiles[term.tile as usize].holds(to_local * s)
-    }
-}
-
 impl BakedNdfMaps {
-    /// Density of one tile at the example's projected normal `s`: quadratic splines over decoded texels (bilinear for
-    /// the paper's storage), 0 outside the box.
-    pub fn tile_density(&self, tile: u32, s: Vec2) -> f32 {
-        if s.length_squared() > 1.0 {
-            return 0.0;
-        }
-        let record = &self.tiles[tile as usize];
-        let (width, height) = (record.width() as i32, record.height() as i32);
-        let p = (s - Vec2::from(record.origin)) * Vec2::from(record.inv_spacing);
-        if !record.holds(s) {
-            return 0.0;
-        }
-        let bilinear = self.params.storage == DensityStorage::PaperF32;
-        let (x, y) = if bilinear { (tent(p.x), tent(p.y)) } else { (Taps::at(p.x), Taps::at(p.y)) };
-        let mut sum = 0.0;
-        for b in 0..3 {
-            let j = y.first + b;
-            if j < 0 || j >= height {
-                continue;
-            }
-            let row = record.texel_offset as i32 + j * width;
-            let mut across = 0.0;
-            for a in 0..3 {
-                let i = x.first + a;
-                if i >= 0 && i < width {
-                    across += x.weights[a as usize] * self.texel((row + i) as usize);
-                }
-            }
-            sum += y.weights[b as usize] * across;
-        }
-        record.scale * sum
-    }
-
-    /// Decoded density texel, relative to its tile's scale.
-    fn texel(&self, at: usize) -> f32 {
-        match self.params.storage {
+    /// Density texels `at`, at + 1 and at + 2, relative to their tile's scale; 0 for those that are not `inside` the tile.
+    fn texels(&self, at: i32, inside: [bool; 3]) -> [f32; 3] {
+        let texel = |at: usize| match self.params.storage {
             DensityStorage::SqrtU8 => {
                 let root = self.density[at] as f32 / 255.0;
                 root * root
@@ -151,7 +155,45 @@ impl BakedNdfMaps {
                 let b = &self.density[4 * at..4 * at + 4];
                 f32::from_le_bytes([b[0], b[1], b[2], b[3]])
             }
+        };
+        let mut values = [0.0; 3];
+        for k in 0..3 {
+            if inside[k] {
+                values[k] = texel((at + k as i32) as usize);
+            }
         }
+        values
+    }
+
+    /// Weighted sum of those of the three density texels from `at` on that lie `inside` the tile.
+    fn row(&self, at: i32, weights: [f32; 3], inside: [bool; 3]) -> f32 {
+        let v = self.texels(at, inside);
+        weights[0] * v[0] + weights[1] * v[1] + weights[2] * v[2]
+    }
+
+    /// Density of one tile at the example's projected normal `s`: quadratic splines over decoded texels (bilinear for
+    /// the paper's storage), 0 outside the box.
+    pub fn tile_density(&self, tile: u32, s: Vec2) -> f32 {
+        if s.length_squared() > 1.0 {
+            return 0.0;
+        }
+        let record = &self.tiles[tile as usize];
+        let size = [record.width() as i32, record.height() as i32];
+        let p = (s - Vec2::from(record.origin)) * Vec2::from(record.inv_spacing);
+        if !record.holds(s) {
+            return 0.0;
+        }
+        let bilinear = self.params.storage == DensityStorage::PaperF32;
+        let [across, down] = [p.x, p.y].map(|p| if bilinear { tent(p) } else { spline(p) });
+        let inside = [0, 1, 2].map(|a| (0..size[0]).contains(&(across.first + a)));
+        let start = record.texel_offset as i32 + down.first * size[0] + across.first;
+        let mut sum = 0.0;
+        for b in 0..3 {
+            if (0..size[1]).contains(&(down.first + b)) {
+                sum += down.weights[b as usize] * self.row(start + b * size[0], across.weights, inside);
+            }
+        }
+        record.scale * sum
     }
 
     /// Projected normal of texel (i, j), wrapped or clamped.
@@ -179,6 +221,55 @@ impl BakedNdfMaps {
 fn tent(p: f32) -> Taps {
     let cell = p.floor();
     Taps { first: cell as i32, weights: [1.0 - (p - cell), p - cell, 0.0] }
+}
+
+/// Φ(x).
+fn normal_cdf(x: f32) -> f32 {
+    0.5 * (1.0 + erf(x * std::f32::consts::FRAC_1_SQRT_2))
+}
+
+/// A box of half width `half` and area 1, convolved with the unit Gaussian, at `x`.
+fn smoothed_box(x: f32, half: f32) -> f32 {
+    // Below this width a box is a Gaussian to 1e-4, and the difference of two error functions loses digits.
+    if half < 0.05 {
+        return (-0.5 * x * x).exp() / (2.0 * std::f32::consts::PI).sqrt();
+    }
+    (normal_cdf(x + half) - normal_cdf(x - half)) / (2.0 * half)
+}
+
+/// Where in a box of half width `half` (as −1 … 1) a point most likely comes from that was seen at `x` after a unit
+/// Gaussian: the posterior mean of Gaussians of the same variances.
+fn place_in_box(x: f32, half: f32) -> f32 {
+    (x * half / (half * half + 3.0)).clamp(-1.0, 1.0)
+}
+
+/// Mean of exp(t · x) over x in −1 … 1: sinh(t) / t, by its series where that has all digits.
+fn mean_exp(t: f32) -> f32 {
+    let q = t * t;
+    if q < 1.0 { 1.0 + q / 6.0 * (1.0 + q / 20.0 * (1.0 + q / 42.0)) } else { t.sinh() / t }
+}
+
+/// Mass on the disk's side of the rim next to `s`, as if that were straight.
+fn inside_rim(s: Vec2, a: Vec2, b: Vec2, sigma: f32) -> f32 {
+    let radius = s.length();
+    let outward = if radius > 0.0 { s / radius } else { Vec2::X };
+    let variance = sigma * sigma + (outward.dot(a).powi(2) + outward.dot(b).powi(2)) / 12.0;
+    normal_cdf((1.0 - radius) / variance.sqrt())
+}
+
+/// Mass inside the disk of a lobe around `s` whose longer edge is `long`: the mean over pieces of that edge, each as
+/// across a straight rim.
+fn inside_disk(s: Vec2, long: Vec2, short: Vec2, sigma: f32) -> f32 {
+    const PIECES: i32 = 4;
+    if s.length() + 0.5 * (long.length() + short.length()) + 5.0 * sigma < 1.0 {
+        return 1.0;
+    }
+    let piece = long / PIECES as f32;
+    let mut sum = 0.0;
+    for k in 0..PIECES {
+        sum += inside_rim(s + piece * (k as f32 + 0.5 - 0.5 * PIECES as f32), piece, short, sigma);
+    }
+    (sum / PIECES as f32).max(1e-3)
 }
 
 /// Largest tilt: a footprint that needs more is far thinner than its boxes, and all of it lies at their ends.
@@ -227,8 +318,8 @@ impl LobeTerm {
         }
     }
 
-    /// Density at `s`.
-    pub fn density(&self, s: Vec2) -> f32 {
+    /// Density at the projected normal `s` of the surface.
+    pub fn lobe_density(&self, s: Vec2) -> f32 {
         /// Beyond this many standard deviations the lobe is nothing.
         const CUT: f32 = 5.0;
         let x = self.to_unit * (self.to_local * s - self.mean);
@@ -244,51 +335,17 @@ impl LobeTerm {
     }
 }
 
-/// Where in a box of half width `half` (as −1 … 1) a point most likely comes from that was seen at `x` after a unit
-/// Gaussian: the posterior mean of Gaussians of the same variances.
-fn place_in_box(x: f32, half: f32) -> f32 {
-    (x * half / (half * half + 3.0)).clamp(-1.0, 1.0)
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Mean of exp(t · x) over x in −1 … 1: sinh(t) / t, by its series where that has all digits.
-fn mean_exp(t: f32) -> f32 {
-    let q = t * t;
-    if q < 1.0 { 1.0 + q / 6.0 * (1.0 + q / 20.0 * (1.0 + q / 42.0)) } else { t.sinh() / t }
-}
-
-/// Mass inside the disk of a lobe around `s` whose longer edge is `long`: the mean over pieces of that edge, each as
-/// across a straight rim.
-fn inside_disk(s: Vec2, long: Vec2, short: Vec2, sigma: f32) -> f32 {
-    const PIECES: i32 = 4;
-    if s.length() + 0.5 * (long.length() + short.length()) + 5.0 * sigma < 1.0 {
-        return 1.0;
+    #[test]
+    fn taps_sum_to_one_and_meet_at_cell_borders() {
+        for k in 0..50 {
+            let p = k as f32 * 0.173 - 2.0;
+            assert!((spline(p).weights.iter().sum::<f32>() - 1.0).abs() < 1e-6);
+        }
+        let (below, above) = (spline(0.499_999), spline(0.500_001));
+        assert!((below.weights[1] - above.weights[0]).abs() < 1e-5);
     }
-    let piece = long / PIECES as f32;
-    let mut sum = 0.0;
-    for k in 0..PIECES {
-        sum += inside_rim(s + piece * (k as f32 + 0.5 - 0.5 * PIECES as f32), piece, short, sigma);
-    }
-    (sum / PIECES as f32).max(1e-3)
-}
-
-/// Mass on the disk's side of the rim next to `s`, as if that were straight.
-fn inside_rim(s: Vec2, a: Vec2, b: Vec2, sigma: f32) -> f32 {
-    let radius = s.length();
-    let outward = if radius > 0.0 { s / radius } else { Vec2::X };
-    let variance = sigma * sigma + (outward.dot(a).powi(2) + outward.dot(b).powi(2)) / 12.0;
-    normal_cdf((1.0 - radius) / variance.sqrt())
-}
-
-/// A box of half width `half` and area 1, convolved with the unit Gaussian, at `x`.
-fn smoothed_box(x: f32, half: f32) -> f32 {
-    // Below this width a box is a Gaussian to 1e-4, and the difference of two error functions loses digits.
-    if half < 0.05 {
-        return (-0.5 * x * x).exp() / (2.0 * std::f32::consts::PI).sqrt();
-    }
-    (normal_cdf(x + half) - normal_cdf(x - half)) / (2.0 * half)
-}
-
-/// Φ(x).
-fn normal_cdf(x: f32) -> f32 {
-    0.5 * (1.0 + erf(x * std::f32::consts::FRAC_1_SQRT_2))
 }

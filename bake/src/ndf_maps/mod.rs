@@ -3,26 +3,27 @@
 //!
 //! `docs/methods/ndf-maps.md` has the equations, and what deviates from the paper.
 //!
-//! [`bake`] makes the maps of one example, [`placement`] covers a surface with it, [`sections`] is both as a pack.
-//! [`surface`] finds what a footprint sees and [`eval`] evaluates it; [`reference`] and [`reference_surface`] are the
-//! same by definition, in f64, and [`measure`] is the difference.
+//! [`bake`] makes the maps of one example (section 5) and [`placement`] covers a surface with it (section 6.2): together a
+//! [`baked::Material`], which [`sections`] keeps in a pack. [`query`] finds what a footprint sees and [`eval`] evaluates it
+//! (section 6.3, Eq. 1); [`reference`] and [`reference_surface`] are the same by definition, in f64, and [`quality`] is the
+//! difference.
 
 pub mod bake;
-mod cells;
-mod disk;
+pub mod baked;
 mod ellipse;
 pub mod eval;
 mod fine_grid;
-pub mod measure;
-pub mod micro_normals;
+mod micro_normals;
+pub mod options;
 pub mod placement;
-mod probes;
+pub mod quality;
+pub mod query;
 pub mod reference;
 pub mod reference_surface;
+mod regions;
 pub mod sections;
 mod spline;
-pub mod surface;
 mod tile_fit;
-pub mod transform;
+mod view;
 
 crate::shader::shaders!("ndf_maps": "eval", "ellipse", "material", "tiles", "lobes", "view", "tiled", "regions", "classes", "probes", "stochastic");

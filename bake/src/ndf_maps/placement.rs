@@ -5,66 +5,28 @@
 //! each; every cell is divided in four sub-regions, and each shows the example, of the 3 × 3 cells around, whose centre
 //! is nearest to the sub-region's centre. Examples go on periodically beyond their edge, so nothing is left uncovered.
 //! Owners are found once, here, and stored.
+//!
+//! Spatial transforms are rotation, mirror, scale, stretch and shear (section 6.1). The paper's matrix M acts on positions and on
+//! normals alike. That is right for rotation, mirror and shear; for a scale it is a choice: `scale` changes an example's size on
+//! the surface and leaves its normals, `stretch` widens its normals and leaves its size. The paper's scaling is both together.
+//! The translation part of M is the noise map's offset.
 
-use super::transform::{self, TransformRanges};
-use crate::error::{BakeError, Result};
+use super::baked::BakedPlacement;
+use super::options::{PlacementOptions, StochasticOptions, TransformRanges};
+use crate::error::Result;
 use crate::normal_map::NormalMap;
 use crate::rng::{ItemRng, Purpose};
-use glam::DVec2;
+use glam::{DMat2, DVec2};
 use glint_formats::ndf_maps::{NoiseTexel, PlacementKind, PlacementParams, TransformRecord};
 
-/// Largest palette: the runtime keeps one weight an entry.
-pub const MAX_PALETTE: u32 = 32;
-
-/// Options of a placement.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PlacementOptions {
-    /// Examples side by side under one transform, the ranges' lower ends.
-    Tiled(TransformRanges),
-    /// Examples around random centres.
-    Stochastic(StochasticOptions),
-}
-
-/// Options of a stochastic placement.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StochasticOptions {
-    /// Ranges of the palette's transforms.
-    pub ranges: TransformRanges,
-    /// Transforms in the palette, 1 … [`MAX_PALETTE`].
-    pub palette: u32,
-    /// Cells along both axes before the surface repeats, a power of two from 2 to 1024.
-    pub cells: u32,
-    /// Edge of a cell relative to the example's longer edge.
-    pub spacing: f64,
-    /// Seed.
-    pub seed: u64,
-}
-
-impl Default for StochasticOptions {
-    fn default() -> StochasticOptions {
-        let ranges = TransformRanges { rotate_degrees: (0.0, 360.0), mirror: true, ..TransformRanges::default() };
-        StochasticOptions { ranges, palette: 16, cells: 32, spacing: 1.0, seed: 1 }
-    }
-}
-
-/// A placement, ready for a pack.
-#[derive(Clone, Debug)]
-pub struct BakedPlacement {
-    /// Parameters.
-    pub params: PlacementParams,
-    /// Transforms.
-    pub palette: Vec<TransformRecord>,
-    /// One texel a cell; empty when tiled.
-    pub noise: Vec<NoiseTexel>,
-    /// Shares of palette entries, unorm8: all mips, each with ⌈palette / 4⌉ layers of RGBA texels; empty when tiled.
-    pub classes: Vec<u8>,
-}
-
-/// Bakes a placement of `map` with lobes of `roughness`. Errors: options without meaning for this map.
-pub fn bake(map: &NormalMap, roughness: f64, options: &PlacementOptions) -> Result<BakedPlacement> {
+/// Places examples of `map`, whose lobes have the standard deviation `roughness`, on a surface.
+///
+/// # Errors
+/// Options out of range, or transforms that would push normals of this map over the horizon.
+pub fn place(map: &NormalMap, roughness: f64, options: &PlacementOptions) -> Result<BakedPlacement> {
     match options {
         PlacementOptions::Tiled(ranges) => {
-            transform::check(ranges, map, roughness)?;
+            ranges.check(map, roughness)?;
             let one = |(lo, _): (f64, f64)| (lo, lo);
             let ranges = TransformRanges {
                 rotate_degrees: one(ranges.rotate_degrees),
@@ -73,27 +35,18 @@ pub fn bake(map: &NormalMap, roughness: f64, options: &PlacementOptions) -> Resu
                 shear: one(ranges.shear),
                 mirror: false,
             };
-            let palette = vec![transform::draw_palette(&ranges, 1, 0)[0].record()];
+            let palette = vec![draw_palette(&ranges, 1, 0)[0].record()];
             let params = PlacementParams { kind: PlacementKind::Tiled, palette_len: 1 };
             Ok(BakedPlacement { params, palette, noise: Vec::new(), classes: Vec::new() })
         }
-        PlacementOptions::Stochastic(options) => bake_stochastic(map, roughness, options),
+        PlacementOptions::Stochastic(options) => place_stochastic(map, roughness, options),
     }
 }
 
-fn bake_stochastic(map: &NormalMap, roughness: f64, options: &StochasticOptions) -> Result<BakedPlacement> {
-    transform::check(&options.ranges, map, roughness)?;
-    let bad = |what: String| Err(BakeError::BadOption(what));
-    if !(1..=MAX_PALETTE).contains(&options.palette) {
-        return bad(format!("a palette of {} transforms is outside 1 … {MAX_PALETTE}", options.palette));
-    }
-    if !options.cells.is_power_of_two() || !(2..=1024).contains(&options.cells) {
-        return bad(format!("{} cells are not a power of two from 2 to 1024", options.cells));
-    }
-    if !(0.25..=8.0).contains(&options.spacing) {
-        return bad(format!("a spacing of {} example edges is outside 0.25 … 8", options.spacing));
-    }
-    let palette = transform::draw_palette(&options.ranges, options.palette, options.seed);
+fn place_stochastic(map: &NormalMap, roughness: f64, options: &StochasticOptions) -> Result<BakedPlacement> {
+    options.ranges.check(map, roughness)?;
+    options.check()?;
+    let palette = draw_palette(&options.ranges, options.palette, options.seed);
     let cells = options.cells;
     let centres: Vec<Centre> = (0..cells * cells).map(|k| Centre::draw(options, k)).collect();
     let noise: Vec<NoiseTexel> = (0..cells * cells)
@@ -113,10 +66,60 @@ fn bake_stochastic(map: &NormalMap, roughness: f64, options: &StochasticOptions)
             kind: PlacementKind::Stochastic { cells_x: cells, cells_y: cells, cell_texels, seed: options.seed },
             palette_len: options.palette,
         },
-        palette: palette.iter().map(transform::Transform::record).collect(),
+        palette: palette.iter().map(Transform::record).collect(),
         classes: class_mips(&noise, cells, options.palette),
         noise,
     })
+}
+
+/// One transform, example → surface, in the tangent plane (+X right, +Y up).
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Transform {
+    /// Acts on offsets in texels.
+    position: DMat2,
+    /// Acts on projected normals.
+    normal: DMat2,
+}
+
+impl Transform {
+    /// Transform of given angle (degrees), mirror, scale, stretch and shear.
+    fn new(degrees: f64, mirror: bool, scale: f64, stretch: f64, shear: f64) -> Transform {
+        let (sin, cos) = (libm::sin(degrees.to_radians()), libm::cos(degrees.to_radians()));
+        let rotation = DMat2::from_cols(DVec2::new(cos, sin), DVec2::new(-sin, cos));
+        let shear = DMat2::from_cols(DVec2::X, DVec2::new(shear, 1.0));
+        let mirror = DMat2::from_diagonal(DVec2::new(if mirror { -1.0 } else { 1.0 }, 1.0));
+        let linear = rotation * shear * mirror;
+        Transform { position: linear * scale, normal: linear * stretch }
+    }
+
+    /// As the pack holds it: inverse matrices, positions with v down.
+    fn record(&self) -> TransformRecord {
+        let flip = DMat2::from_diagonal(DVec2::new(1.0, -1.0));
+        let rows = |m: DMat2| [m.x_axis.x as f32, m.y_axis.x as f32, m.x_axis.y as f32, m.y_axis.y as f32];
+        TransformRecord {
+            position_to_local: rows(flip * self.position.inverse() * flip),
+            normal_to_local: rows(self.normal.inverse()),
+        }
+    }
+}
+
+/// Draws `count` transforms, stratified in every parameter, one seed one result.
+fn draw_palette(ranges: &TransformRanges, count: u32, seed: u64) -> Vec<Transform> {
+    let mut rng = ItemRng::new(seed, Purpose::NdfPalette, 0);
+    let orders: Vec<Vec<u32>> = (0..4).map(|_| rng.permutation(count)).collect();
+    let mirrored = rng.permutation(count);
+    (0..count as usize)
+        .map(|k| {
+            let mut draw = |(lo, hi): (f64, f64), order: &[u32]| {
+                if lo == hi { lo } else { lo + (hi - lo) * (order[k] as f64 + rng.unit()) / count as f64 }
+            };
+            let degrees = draw(ranges.rotate_degrees, &orders[0]);
+            let scale = draw(ranges.scale, &orders[1]);
+            let stretch = draw(ranges.stretch, &orders[2]);
+            let shear = draw(ranges.shear, &orders[3]);
+            Transform::new(degrees, ranges.mirror && mirrored[k] % 2 == 1, scale, stretch, shear)
+        })
+        .collect()
 }
 
 /// A cell's random numbers.

@@ -5,7 +5,7 @@
 //! positions from the transforms. A sub-texel lattice holds the example's normals, as an explicit map of higher
 //! resolution would; footprints under two texels are integrated without it.
 
-use super::eval::Material;
+use super::baked::Material;
 use super::reference::{DiskMass, MicroNormal, ReferenceNdf};
 use crate::footprint::Footprint;
 use crate::normal_map::NormalMap;

@@ -1,8 +1,6 @@
 //! A material of the tiny-example method as sections of a pack, and back.
 
-use super::bake::BakedNdfMaps;
-use super::eval::Material;
-use super::placement::BakedPlacement;
+use super::baked::{BakedNdfMaps, BakedPlacement, Material};
 use crate::error::Result;
 use crate::pack_access::{bytes, names_with, parameters, records};
 use glint_formats::ndf_maps::{

@@ -5,10 +5,10 @@
 //! a sum over one lobe a texel), and values are fitted by least squares to what spline interpolation will reconstruct,
 //! with as few texels along each axis as the error asked for allows.
 
-use super::disk::{self, LobeNorm};
-use super::fine_grid::FineGrid;
+use super::eval::{Taps, spline};
+use super::fine_grid::{FineGrid, LobeNorm};
 use super::micro_normals::TexelRect;
-use super::spline::{Fit, Taps, add_scaled};
+use super::spline::{Fit, add_scaled, spline_integral};
 use crate::normal_map::NormalMap;
 use glam::DVec2;
 use glint_formats::ndf_maps::DensityStorage;
@@ -19,7 +19,7 @@ const STEPS: (usize, usize) = (1, 9);
 
 /// A tile's fitted values, quantised: what the pack holds.
 #[derive(Clone, Debug)]
-pub struct FittedTile {
+pub(super) struct FittedTile {
     /// Projected normal of texel (0, 0).
     pub origin: [f64; 2],
     /// Texel spacing along both axes.
@@ -40,7 +40,7 @@ pub struct FittedTile {
 
 /// What every tile of an example shares.
 #[derive(Clone, Debug)]
-pub struct FitSettings {
+pub(super) struct FitSettings {
     /// σ_r.
     pub roughness: f64,
     /// E₁ wanted on average over tiles.
@@ -53,7 +53,7 @@ pub struct FitSettings {
 
 /// Fits one tile at spacings around the one that has the error asked for: candidates to choose from, of which the
 /// first is the most accurate.
-pub fn fit_tile(map: &NormalMap, rect: TexelRect, settings: &FitSettings) -> Vec<FittedTile> {
+pub(super) fn fit_tile(map: &NormalMap, rect: TexelRect, settings: &FitSettings) -> Vec<FittedTile> {
     let fine = FineGrid::new(map, rect, settings.roughness, &settings.norm);
     if settings.storage == DensityStorage::PaperF32 {
         return vec![paper_tile(&fine)];
@@ -142,7 +142,7 @@ fn fit_splines(columns: &mut ColumnFits, steps: [usize; 2], storage: DensityStor
     let origin = fine.origin.to_array();
     let bytes = encode(&mut values, storage);
     // Normalised after rounding, so that what is decoded integrates to one.
-    let integral = disk::spline_integral(&values, width, height, origin, spacing);
+    let integral = spline_integral(&values, width, height, origin, spacing);
     let scale = (1.0 / integral) as f32;
     let error = spline_error(fine, &values, width, steps, scale);
     FittedTile { origin, spacing, width, height, scale, bytes, error, energy: (scale as f64 * integral - 1.0).abs() }
@@ -174,7 +174,7 @@ fn encode(values: &mut [f32], storage: DensityStorage) -> Vec<u8> {
 /// E₁ of decoded values over the fine nodes inside the disk.
 fn spline_error(fine: &FineGrid, values: &[f32], width: usize, steps: [usize; 2], scale: f32) -> f64 {
     // Spread every row of values over the fine columns, then blend three such rows for every fine row.
-    let taps: Vec<Taps> = (0..fine.width).map(|i| Taps::at(i as f32 / steps[0] as f32)).collect();
+    let taps: Vec<Taps> = (0..fine.width).map(|i| spline(i as f32 / steps[0] as f32)).collect();
     let mut spread = Vec::with_capacity(values.len() / width * fine.width);
     let mut padded = vec![0.0f32; width + 2];
     for row in values.chunks_exact(width) {
@@ -189,7 +189,7 @@ fn spline_error(fine: &FineGrid, values: &[f32], width: usize, steps: [usize; 2]
     let (mut difference, mut total) = (0.0f64, 0.0f64);
     for j in 0..fine.height {
         let Some(columns) = fine.columns_inside(j) else { continue };
-        let rows = Taps::at(j as f32 / steps[1] as f32);
+        let rows = spline(j as f32 / steps[1] as f32);
         decoded.fill(0.0);
         for (k, weight) in rows.weights.into_iter().enumerate() {
             let row = rows.first + k as i32;

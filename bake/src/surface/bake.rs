@@ -4,23 +4,27 @@
 //! alignment, and a block of it is a cell of the sample if cells of its edge begin there too. They are still made of four
 //! cells of half the edge each, so that a level costs as many reductions as it has cells.
 
-use super::{Surface, quality, whole};
-use crate::error::{BakeError, Result};
+use super::baked::Surface;
+use super::options::SurfaceOptions;
+use super::quality;
+use crate::error::Result;
 use crate::lobes::bake as levels;
 use crate::lobes::gaussian::Gaussian4;
-use crate::lobes::options::TEXEL_BYTES;
+use crate::lobes::merge::{self, MergeSettings};
 use crate::lobes::{BakedLobes, LobesOptions};
 use crate::normal_map::NormalMap;
 use crate::progress::Progress;
-use crate::synthesis::{self, SynthesisOptions};
-use glint_formats::Wrap;
-use glint_formats::lobes::{BEYOND_RIM, LobeLevel, LobesUniform, MAX_LAST_CELLS};
+use crate::rng::{ItemRng, Purpose};
+use crate::synthesis::{self, Synthesis};
+use glam::{DMat2, DVec2};
+use glint_formats::lobes::{BEYOND_RIM, LobeLevel, MAX_LAST_CELLS};
+use glint_formats::synthesis::Layout;
 use rayon::prelude::*;
-use std::borrow::Cow;
 
-/// What patches are aligned to by default, and in how many texels cells begin: at 8, there would be four times as many
-/// cells; at 32, few places to cut patches from.
-pub const ALIGNMENT: u32 = 16;
+/// Most columns and rows of patches that are counted for the surface as a whole; what they show stands for the rest.
+const MOST_PATCHES: u32 = 64;
+/// Cells whose lobes are reduced at a time for the surface as a whole.
+const GROUP: usize = 4;
 
 /// Bakes a surface of patches of `map`. A map that repeats, but not after a multiple of the alignment, is used as one that
 /// does not.
@@ -28,18 +32,14 @@ pub const ALIGNMENT: u32 = 16;
 /// # Errors
 /// `BadOption` for options without a meaning, `BadInput` for a map too small for a patch, `LimitExceeded` for a map or
 /// surface too large.
-pub fn bake(
-    map: &NormalMap,
-    lobes: &LobesOptions,
-    synthesis: &SynthesisOptions,
-    progress: &dyn Progress,
-) -> Result<Surface> {
-    check(map, lobes, synthesis)?;
-    let sample = sample_of(map, synthesis.alignment);
-    let synthesis = synthesis::bake(&sample, synthesis, progress)?;
+pub fn bake(map: &NormalMap, options: &SurfaceOptions, progress: &dyn Progress) -> Result<Surface> {
+    options.check(map)?;
+    let sample = options.sample_of(map);
+    let lobes = &options.lobes;
+    let synthesis = synthesis::bake(&sample, &options.synthesis, progress)?;
     let mut baked = levels::without_levels(&sample, lobes);
     baked.params.step_texels = synthesis.params.alignment;
-    build_levels(&sample, lobes, &synthesis, &mut baked, progress);
+    build_levels(&sample, options, &synthesis, &mut baked, progress);
     baked.params.rim_roughness = baked.rim_roughness(BEYOND_RIM);
     let mut surface = Surface { lobes: baked, synthesis };
     let roughness = levels::measured_roughness(&surface.lobes, lobes);
@@ -48,68 +48,21 @@ pub fn bake(
     Ok(surface)
 }
 
-/// Whether the options make sense together, and for this map.
-///
-/// # Errors
-/// As [`bake`].
-pub fn check(map: &NormalMap, lobes: &LobesOptions, synthesis: &SynthesisOptions) -> Result<()> {
-    lobes.check(map)?;
-    synthesis.validate_for(&sample_of(map, synthesis.alignment))?;
-    if !synthesis.alignment.is_power_of_two() {
-        let found = synthesis.alignment;
-        return Err(BakeError::BadOption(format!("--alignment: expected a power of two, found {found}")));
-    }
-    if lobes.cell_texels > synthesis.alignment {
-        return Err(BakeError::BadOption(format!(
-            "--cell: a surface of patches needs finest cells of {} texels at most, found {}",
-            synthesis.alignment, lobes.cell_texels
-        )));
-    }
-    Ok(())
-}
-
-/// Bytes of lobes, normals, offsets and seams at most, for a map of this size.
-pub fn most_bytes(width: u32, height: u32, lobes: &LobesOptions, synthesis: &SynthesisOptions) -> u64 {
-    let stored = |cell: u32| {
-        let step = cell.min(synthesis.alignment);
-        width.div_ceil(step) as u64 * height.div_ceil(step) as u64
-    };
-    let cells: u64 = edges(lobes.cell_texels, synthesis.patch).map(stored).sum();
-    let texels = width as u64 * height as u64 * TEXEL_BYTES;
-    size_of::<LobesUniform>() as u64
-        + (cells + MAX_LAST_CELLS as u64) * lobes.lobes_per_cell as u64 * lobes.storage.stride() as u64
-        + texels
-        + synthesis.most_bytes()
-}
-
-/// The map as patches are cut from it.
-pub fn sample_of(map: &NormalMap, alignment: u32) -> Cow<'_, NormalMap> {
-    let whole = map.width.is_multiple_of(alignment) && map.height.is_multiple_of(alignment);
-    if map.wrap == Wrap::Repeat && !whole {
-        Cow::Owned(NormalMap { wrap: Wrap::Clamp, ..map.clone() })
-    } else {
-        Cow::Borrowed(map)
-    }
-}
-
-/// Edges of stored cells: doubling as long as they divide the patch.
-fn edges(first: u32, patch: u32) -> impl Iterator<Item = u32> {
-    std::iter::successors(Some(first), |edge| edge.checked_mul(2)).take_while(move |edge| patch.is_multiple_of(*edge))
-}
-
 fn build_levels(
     sample: &NormalMap,
-    options: &LobesOptions,
-    synthesis: &synthesis::Synthesis,
+    options: &SurfaceOptions,
+    synthesis: &Synthesis,
     baked: &mut BakedLobes,
     progress: &dyn Progress,
 ) {
-    let grids: Vec<LobeLevel> = edges(options.cell_texels, synthesis.params.patch)
+    let grids: Vec<LobeLevel> = options
+        .edges()
         .map(|edge| {
             let (cells_x, cells_y) = baked.params.grid(edge);
             LobeLevel { cells_x, cells_y, ..levels::grid(sample, edge) }
         })
         .collect();
+    let options = &options.lobes;
     let count = |grid: &LobeLevel| grid.cells_x as usize * grid.cells_y as usize;
     // Cells of the first level hold finer ones that are not kept, so that they cost several times as much.
     let steps = |at: usize| if at == 0 { 4 } else { 1 };
@@ -138,7 +91,7 @@ fn build_levels(
     }
     progress.end();
     let Some(first) = grids.first() else { return };
-    let lobes = whole::reduce(synthesis, first, baked.params.step(first.cell_texels), &finest, options);
+    let lobes = reduce_whole(synthesis, first, baked.params.step(first.cell_texels), &finest, options);
     let edge = 2 * grids[grids.len() - 1].cell_texels;
     let cells: Vec<Vec<Gaussian4>> = lobes.chunks(options.lobes_per_cell as usize).map(<[Gaussian4]>::to_vec).collect();
     let last = LobeLevel { cells_x: cells.len() as u32, cells_y: 1, ..levels::grid(sample, edge) };
@@ -166,4 +119,74 @@ fn quarters(baked: &BakedLobes, below: &LobeLevel, cells: &[Vec<Gaussian4>], x: 
         }));
     }
     parts
+}
+
+/// The surface as one set of lobes over normals, for footprints that see more patches than can be read one by one: at most those of
+/// [`MAX_LAST_CELLS`] cells, from the cells of the finest stored level, which begin at multiples of `step`. Every block of the
+/// surface is a cell of the sample, but for seams; cells count as often as the surface shows them.
+fn reduce_whole(
+    surface: &Synthesis,
+    grid: &LobeLevel,
+    step: u32,
+    cells: &[Vec<Gaussian4>],
+    options: &LobesOptions,
+) -> Vec<Gaussian4> {
+    let mut counts = counts(surface, grid, step);
+    if counts.iter().all(|count| *count == 0) {
+        counts.fill(1);
+    }
+    let middle = DVec2::splat(0.5 * grid.cell_texels as f64);
+    let seen = |(lobes, &count): (&Vec<Gaussian4>, &u32)| -> Vec<Gaussian4> {
+        // Positions do not matter any more: all alike, slopes become a part of the covariance of normals.
+        lobes
+            .iter()
+            .map(|lobe| {
+                let weight = lobe.weight * f64::from(count);
+                Gaussian4::of_surface(
+                    weight,
+                    middle,
+                    DMat2::IDENTITY,
+                    lobe.normal(),
+                    DMat2::ZERO,
+                    lobe.normal_covariance(),
+                )
+            })
+            .collect()
+    };
+    let mut sets: Vec<Vec<Gaussian4>> = cells.iter().zip(&counts).filter(|(_, count)| **count > 0).map(seen).collect();
+    let most = MAX_LAST_CELLS * options.lobes_per_cell;
+    let settings = MergeSettings { merge: options.merge, lobes: most as usize, blur: [1.0, options.roughness] };
+    let mut round = 0;
+    while sets.len() > 1 {
+        sets = sets
+            .par_chunks(GROUP)
+            .enumerate()
+            .map(|(at, group)| {
+                let mut rng = ItemRng::new(options.seed, Purpose::SurfaceLobes(round), at as u32);
+                merge::reduce(&group.concat(), &settings, &mut rng)
+            })
+            .collect();
+        round += 1;
+    }
+    sets.pop().unwrap_or_default()
+}
+
+/// How many blocks of the surface show each cell.
+fn counts(surface: &Synthesis, grid: &LobeLevel, step: u32) -> Vec<u32> {
+    let params = &surface.params;
+    let (columns, rows) = match params.layout {
+        Layout::Patches { columns, rows, .. } => (columns.min(MOST_PATCHES), rows.min(MOST_PATCHES)),
+        Layout::CornerTiles { .. } => (MOST_PATCHES, MOST_PATCHES),
+    };
+    let edge = grid.cell_texels as i32;
+    let blocks = |patches: u32| (patches * params.patch) as i32 / edge;
+    let mut counts = vec![0; grid.cells_x as usize * grid.cells_y as usize];
+    for by in 0..blocks(rows) {
+        for bx in 0..blocks(columns) {
+            if let Some((x, y)) = surface.nominal_block(bx * edge, by * edge, edge, step) {
+                counts[(y / step * grid.cells_x + x / step) as usize] += 1;
+            }
+        }
+    }
+    counts
 }

@@ -1,5 +1,4 @@
-// A block of a synthesised surface as if it had no seams: one of the two ways to read a surface, for glint_surface.wgsl. Twin of
-// glint-bake-core surface/query.rs with `whole_blocks`.
+// A block of a synthesised surface as if it had no seams: one of the two ways to read a surface, for surface::eval.
 
 #import surface::query
 
@@ -11,7 +10,7 @@ fn glint_surface_block(q: GlintSurfaceQuery, level_index: u32, place: vec2i, who
     let on_surface = q.origin + at;
     let source = glint_synthesis_nominal_texel(q.synthesis, on_surface.x, on_surface.y, i32(level.cell_texels));
     let most = vec2u(level.cells_x, level.cells_y) - 1u;
-    let shown = min(vec2u(source) / glint_lobes_step(q.map, level.cell_texels), most);
+    let shown = min(vec2u(source) / glint_surface_step(q.map, level.cell_texels), most);
     let cell = select(shown, vec2u(place), whole);
     let first = level.first_lobe + (cell.y * level.cells_x + cell.x) * q.map.lobes_per_cell;
     return glint_lobes_cell(q.map, q.point, level, first, vec2f(at));

@@ -5,34 +5,22 @@
 //! multiples of the patches' alignment, so that one small set serves every patch wherever it was cut from.
 //! `docs/methods/surface.md` has what deviates.
 //!
-//! [`mod@bake`] makes both parts, [`query`] lists what a footprint sees, [`quality`] compares it with the assembled map.
+//! [`bake()`] makes both parts. [`Surface::p_ndf`] sums what a footprint sees, by blocks that follow every seam or none;
+//! [`quality`] compares that with the assembled map; [`sections`] is all as a pack.
 
-pub mod bake;
+mod bake;
+mod baked;
+mod blocks;
+mod eval;
+mod options;
 pub mod quality;
-pub mod query;
+mod query;
+mod seams;
 pub mod sections;
-mod whole;
 
-crate::shader::shaders!("surface": "query", "seams", "blocks");
+crate::shader::shaders!("surface": "query", "seams", "blocks", "eval");
 
 pub use bake::bake;
+pub use baked::Surface;
+pub use options::{ALIGNMENT, SurfaceOptions};
 pub use query::SurfaceSettings;
-
-use crate::lobes::BakedLobes;
-use crate::synthesis::Synthesis;
-
-/// A synthesised surface and the lobes of its sample.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Surface {
-    /// Lobes of the sample; their last level is the surface as a whole.
-    pub lobes: BakedLobes,
-    /// Where the surface shows what of the sample.
-    pub synthesis: Synthesis,
-}
-
-impl Surface {
-    /// Bytes that a renderer keeps: lobes, normals, offsets and seams.
-    pub fn gpu_bytes(&self) -> usize {
-        self.lobes.gpu_bytes() + 4 * (self.synthesis.offsets.len() + self.synthesis.seams.len())
-    }
-}

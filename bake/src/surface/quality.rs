@@ -1,9 +1,12 @@
 //! Error of a surface's P-NDFs against the exact one of the same surface, assembled as a map.
 
-use super::{Surface, SurfaceSettings};
+use super::baked::Surface;
+use super::eval::level_sum;
+use super::query::{SurfaceSettings, query};
 use crate::footprint::Footprint;
 use crate::lobes::LobesOptions;
 use crate::lobes::bake::{MEASURED_REFINEMENT, MEASURED_SIGMAS, measured_footprints};
+use crate::lobes::eval::SeenLobe;
 use crate::lobes::quality::{FootprintErrors, Gathered, STRIDE, difference};
 use crate::lobes::query::Detail;
 use crate::lobes::reference::Reference;
@@ -26,7 +29,7 @@ const MEASURED_PATCHES: u32 = 64;
 /// What is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measured {
-    /// Levels as the evaluator chooses them.
+    /// Levels as the evaluator chooses them for a footprint.
     Chosen(SurfaceSettings),
     /// One level.
     At(Detail, SurfaceSettings),
@@ -38,6 +41,30 @@ impl Measured {
             Measured::Chosen(settings) => surface.gather(footprint, roughness as f32, settings),
             Measured::At(detail, settings) => surface.gather_detail(footprint, *detail, roughness as f32, settings),
         }
+    }
+}
+
+impl Surface {
+    /// The lobes that a footprint sees, shares summing to 1.
+    pub fn gather(&self, footprint: &Footprint, roughness: f32, settings: &SurfaceSettings) -> Gathered {
+        let q = query(self, footprint, roughness, settings);
+        let add = |list: &mut Vec<SeenLobe>, detail| level_sum(&q, detail, &mut |seen: &SeenLobe| list.push(*seen));
+        Gathered::of(&self.lobes.lod(&q.point.frame, &settings.lobes), add)
+    }
+
+    /// The lobes that a footprint sees at one level.
+    fn gather_detail(
+        &self,
+        footprint: &Footprint,
+        detail: Detail,
+        roughness: f32,
+        settings: &SurfaceSettings,
+    ) -> Gathered {
+        let q = query(self, footprint, roughness, settings);
+        let add = |list: &mut Vec<SeenLobe>, detail| level_sum(&q, detail, &mut |seen: &SeenLobe| list.push(*seen));
+        let mut gathered = Gathered::default();
+        gathered.add_level(detail, 1.0, add);
+        gathered
     }
 }
 

@@ -1,14 +1,7 @@
-// Distribution of normals (P-NDF) that a footprint sees on a surface synthesised by patches.
-// Tan et al. 2022, "Real-Time Microstructure Rendering with MIP-mapped Normal Map Samples", section 5.2. Twin of glint-bake-core
-// surface/query.rs, where deviations from the paper are derived: a level is walked by blocks of its cells' edge.
+// A footprint on a surface synthesised by patches, and what the surface shows at a place of it.
+// Tan et al. 2022, "Real-Time Microstructure Rendering with MIP-mapped Normal Map Samples", section 5.2.
 //
-// Accessors that the including program defines, besides those of glint_lobes.wgsl and glint_synthesis.wgsl:
-//   fn glint_surface_block(q: GlintSurfaceQuery, level: u32, place: vec2i, whole: bool) -> vec2f
-//       density and share of a block of a level's edge, `place` of them from the origin; with `whole` of the cell `place` of
-//       the level, as if every place were alike; and
-//   fn glint_surface_boxes(q: GlintSurfaceQuery, edge: f32) -> vec2f
-//       density and share of boxes of `edge` texels under the footprint: both by glint_surface_seams.wgsl, which follows every
-//       seam, or glint_surface_blocks.wgsl, which follows none
+// Accessors: those of lobes::query and synthesis::eval.
 
 #import lobes::query
 #import synthesis::eval
@@ -21,11 +14,11 @@ struct GlintSurfaceSettings {
     // Edge in texels of a level's cells from which on blocks that seams cross are read by the parts of lobes that each patch
     // owns; those of smaller ones by blocks of the finest level and boxes.
     owned_from: f32,
-    // Geometric mean of the footprint's deviations, in texels, from which on all but the finest blocks are read so.
+    // Geometric mean of the footprint's standard deviations, in texels, from which on all but the finest blocks are read so.
     owned_sigma: f32,
     // Largest range of normals in a box at a seam, over the roughness, that is not halved.
     box_range: f32,
-    // Footprint's major deviation, in texels, up to which boxes at seams are halved along both axes.
+    // Footprint's major standard deviation, in texels, up to which boxes at seams are halved along both axes.
     halves_until: f32,
 }
 
@@ -39,17 +32,17 @@ struct GlintSurfaceQuery {
     settings: GlintSurfaceSettings,
 }
 
-fn glint_surface_default_settings() -> GlintSurfaceSettings {
+fn glint_surface_default() -> GlintSurfaceSettings {
     return GlintSurfaceSettings(glint_lobes_default(), 32.0, 14.0, 2.0, 6.0);
 }
 
-// Few lobes, for pictures, with glint_surface_blocks.wgsl.
-fn glint_surface_realtime_settings() -> GlintSurfaceSettings {
+// Few lobes, for pictures, with surface::blocks.
+fn glint_surface_realtime() -> GlintSurfaceSettings {
     return GlintSurfaceSettings(glint_lobes_realtime(), 32.0, 14.0, 2.0, 6.0);
 }
 
 // Texels from one cell of `cell_texels` to the next.
-fn glint_lobes_step(map: GlintLobesMap, cell_texels: u32) -> u32 {
+fn glint_surface_step(map: GlintLobesMap, cell_texels: u32) -> u32 {
     return select(min(cell_texels, map.step_texels), cell_texels, map.step_texels == 0u);
 }
 
@@ -100,66 +93,4 @@ fn glint_surface_patch_at(q: GlintSurfaceQuery, u: vec2f) -> GlintLobesPatch {
         glint_surface_texel(q, at + vec2i(1, 1)),
         p - cell,
     );
-}
-
-// Density and share of what the surface shows of a level under the footprint: 0 boxes, then the stored ones; the last, and
-// what would lie beyond it, is the whole surface.
-fn glint_surface_level_sum(given: GlintSurfaceQuery, level: u32, box_edge: f32) -> vec2f {
-    if level == 0u {
-        return glint_surface_boxes(given, box_edge);
-    }
-    let whole = level >= given.map.levels;
-    let index = min(level, given.map.levels) - 1u;
-    let stored = glint_lobes_level(index);
-    var q = given;
-    if whole {
-        q.point.along = vec2f(0.0);
-        q.point.across = vec2f(0.0);
-    }
-    let frame = q.point.frame;
-    let ellipse = glint_lobes_ellipse(frame, q.settings.lobes.cells_reach);
-    let edge = f32(stored.cell_texels);
-    let first = i32(floor((frame.mean.y - ellipse.top) / edge));
-    let below = min(i32(floor((frame.mean.y + ellipse.top) / edge)), first + i32(GLINT_LOBES_MOST_STEPS));
-    let last = select(below, i32(stored.cells_y) - 1, whole);
-    let every = vec2i(0, i32(stored.cells_x) - 1);
-    var sum = vec2f(0.0);
-    // One loop over rows and columns: of pixels that run in step few have their longest rows together.
-    var j = select(first, 0, whole);
-    var row = select(glint_lobes_row(ellipse, 0.0, edge, f32(j) * edge), every, whole);
-    while j <= last {
-        if row.x <= row.y {
-            sum += glint_surface_block(q, index, vec2i(row.x, j), whole);
-        }
-        row.x += 1;
-        if row.x > row.y {
-            j += 1;
-            row = select(glint_lobes_row(ellipse, 0.0, edge, f32(j) * edge), every, whole);
-        }
-    }
-    return sum;
-}
-
-// P-NDF at the query's normal: density over the disk, 0 outside it.
-fn glint_surface_p_ndf(q: GlintSurfaceQuery) -> f32 {
-    if !(dot(q.point.s, q.point.s) <= 1.0) {
-        return 0.0;
-    }
-    let lod = glint_lobes_lod(q.map, q.point.frame, q.settings.lobes);
-    let whole = q.map.levels;
-    let last = select(lod.finer, lod.finer + 1u, lod.fraction > 0.0);
-    var density = 0.0;
-    var at = select(lod.finer, last, lod.fraction >= 1.0);
-    var level = at;
-    while at <= last {
-        let sum = glint_surface_level_sum(q, level, lod.box_edge);
-        if !(sum.y >= GLINT_LOBES_LEAST_SHARE) && level < whole {
-            level = whole;
-            continue;
-        }
-        density += select(1.0 - lod.fraction, lod.fraction, at > lod.finer) * sum.x / max(sum.y, GLINT_LOBES_LEAST_SHARE);
-        at += 1u;
-        level = at;
-    }
-    return density;
 }

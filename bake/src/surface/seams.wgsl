@@ -1,5 +1,5 @@
-// A block of a synthesised surface that follows every seam: one of the two ways to read a surface, for glint_surface.wgsl.
-// Tan et al. 2022, section 5.2. Twin of glint-bake-core surface/query.rs: a block that lies clear of seams is one cell of the
+// A block of a synthesised surface that follows every seam: one of the two ways to read a surface, for surface::eval.
+// Tan et al. 2022, section 5.2: a block that lies clear of seams is one cell of the
 // sample, moved. Where seams cross, the cells of all patches that show a corner of the block are read, and of each the quarters
 // of lobes that lie where the surface shows that patch. Smaller blocks are read by blocks of the finest level, and those by
 // boxes of a texel.
@@ -104,15 +104,15 @@ fn glint_surface_boxes(q: GlintSurfaceQuery, edge: f32) -> vec2f {
 
 // Offset of a quarter of a lobe from its mean, by its signs along the columns of the factor. Four quarters have the lobe's
 // moments.
-fn glint_lobes_quarter_offset(lobe: GlintLobe, signs: vec2f) -> vec2f {
+fn glint_surface_quarter_offset(lobe: GlintLobe, signs: vec2f) -> vec2f {
     let d = signs * 0.8660254;
     return vec2f(lobe.factor.x * d.x, lobe.factor.y * d.x + lobe.factor.z * d.y);
 }
 
 // The part of a lobe that is made of `count` of its quarters, whose signs sum to `signs`.
-fn glint_lobes_part_of(lobe: GlintLobe, count: f32, signs: vec2f) -> GlintLobe {
+fn glint_surface_part_of(lobe: GlintLobe, count: f32, signs: vec2f) -> GlintLobe {
     let mean = signs / max(count, 1.0);
-    let d = glint_lobes_quarter_offset(lobe, mean);
+    let d = glint_surface_quarter_offset(lobe, mean);
     // A quarter of the variance lies within quarters, the rest between their means.
     let narrow = sqrt(1.0 - 0.75 * mean * mean);
     return GlintLobe(
@@ -134,7 +134,7 @@ fn glint_surface_cell(
     at: vec2i,
     owned: bool,
 ) -> vec2f {
-    let step = glint_lobes_step(q.map, level.cell_texels);
+    let step = glint_surface_step(q.map, level.cell_texels);
     let place = vec2u(source) / step;
     let first = level.first_lobe + (place.y * level.cells_x + place.x) * q.map.lobes_per_cell;
     let corner = vec2f(at);
@@ -151,7 +151,7 @@ fn glint_surface_cell(
             var signs = vec2f(0.0);
             for (var quarter = 0; quarter < 4; quarter++) {
                 let sign = vec2f(f32(quarter & 1), f32(quarter >> 1u)) * 2.0 - 1.0;
-                let middle = lobe.position + glint_lobes_quarter_offset(lobe, sign);
+                let middle = lobe.position + glint_surface_quarter_offset(lobe, sign);
                 let texel = clamp(vec2i(middle), vec2i(0), last);
                 let on_surface = q.origin + at + texel;
                 let found = glint_synthesis_source_texel(q.synthesis, on_surface.x, on_surface.y);
@@ -163,7 +163,7 @@ fn glint_surface_cell(
             if count == 0.0 {
                 continue;
             }
-            lobe = glint_lobes_part_of(lobe, count, signs);
+            lobe = glint_surface_part_of(lobe, count, signs);
         }
         sum += glint_surface_lobe(q.point, lobe, q.point.frame.mean - corner - lobe.position);
     }
@@ -174,7 +174,7 @@ fn glint_surface_cell(
 fn glint_surface_whole_block(q: GlintSurfaceQuery, level_index: u32, at: vec2i, owned: bool) -> GlintSurfaceBlock {
     let level = glint_lobes_level(level_index);
     let edge = i32(level.cell_texels);
-    let step = i32(glint_lobes_step(q.map, level.cell_texels));
+    let step = i32(glint_surface_step(q.map, level.cell_texels));
     let on_surface = q.origin + at;
     let block = glint_synthesis_block_source(q.synthesis, on_surface.x, on_surface.y, edge, step);
     if !block.found && !owned {

@@ -1,6 +1,6 @@
 //! A surface as sections of a pack, and back: those of its lobes and of its synthesis, under one name.
 
-use super::Surface;
+use super::baked::Surface;
 use crate::error::{BakeError, Result};
 use crate::lobes::sections as lobes;
 use crate::synthesis::sections as synthesis;
@@ -8,7 +8,7 @@ use glint_formats::{Codec, Pack, Section};
 
 /// The sections of one surface under `name`, stored as `codec` says.
 pub fn to_sections(name: &str, surface: &Surface, codec: Codec) -> Vec<Section> {
-    let mut sections = lobes::parts_to_sections(name, &surface.lobes, surface.synthesis.params.uniform(), codec);
+    let mut sections = lobes::parts_to_sections(name, &surface.lobes, surface.synthesis.uniform, codec);
     sections.extend(synthesis::to_sections(name, &surface.synthesis, codec));
     sections
 }

@@ -1,6 +1,6 @@
 //! The surface as an explicit normal map: to look at, and to test against.
 
-use super::Synthesis;
+use super::baked::Synthesis;
 use crate::error::{BakeError, Result};
 use crate::normal_map::NormalMap;
 use glint_formats::Wrap;

@@ -4,31 +4,19 @@
 //! most of a patch is whole cells of the sample. Its left and its upper cut run through the corner too; there a texel is
 //! the new patch's when both give it to the patch.
 
-use super::candidates::Candidates;
+use super::baked::Synthesis;
+use super::candidates::{Candidates, Runs};
 use super::choose::{Choice, Radii};
-use super::cut_errors::CutErrors;
-use super::features::{Features, distance};
-use super::measure::measure;
+use super::corner_tiles::corner_tiles;
+use super::features::{Feature, Features, distance};
 use super::options::{SynthesisOptions, Target};
-use super::runs::Runs;
+use super::pair_errors::{CutErrors, PairErrors};
+use super::quality::measure;
 use super::seams::{cut, push_path};
-use super::strips::PairErrors;
-use super::tiles;
 use crate::error::Result;
 use crate::normal_map::NormalMap;
 use crate::progress::Progress;
-use glint_formats::synthesis::{Layout, MeasuredError, SynthesisParams};
-
-/// A synthesised surface as it is stored.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Synthesis {
-    /// Parameters.
-    pub params: SynthesisParams,
-    /// Sample texel at a patch's texel (0, 0), as the layout orders patches.
-    pub offsets: Vec<[u16; 2]>,
-    /// Seam paths, as the layout orders them.
-    pub seams: Vec<u32>,
-}
+use glint_formats::synthesis::Layout;
 
 /// Synthesises the surface that `options` asks for from a sample.
 ///
@@ -42,28 +30,11 @@ pub fn bake(sample: &NormalMap, options: &SynthesisOptions, progress: &dyn Progr
     let mut synthesis = match options.target {
         Target::Patches { width, height } => quilt(&features, &candidates, options, (width, height), progress),
         Target::Unbounded { colours, variants } => {
-            tiles::corner_tiles(&features, &candidates, options, (colours, variants), progress)
+            corner_tiles(&features, &candidates, options, (colours, variants), progress)
         }
     };
     synthesis.params.measured = measure(&synthesis, sample);
     Ok(synthesis)
-}
-
-/// Parameters of a surface with this layout, not yet measured.
-pub(super) fn params(features: &Features, options: &SynthesisOptions, layout: Layout) -> SynthesisParams {
-    SynthesisParams {
-        sample_width: features.size().0,
-        sample_height: features.size().1,
-        wrap: features.wrap(),
-        patch: options.patch,
-        overlap: options.overlap,
-        alignment: options.alignment,
-        alpha: options.alpha as f32,
-        error_tolerance: options.error_tolerance as f32,
-        seed: options.seed,
-        layout,
-        measured: MeasuredError::default(),
-    }
 }
 
 fn quilt(
@@ -93,7 +64,8 @@ fn quilt(
     };
     let placed = choice.run(progress);
     let offsets: Vec<[u16; 2]> = placed.iter().map(|&c| candidates.offsets[c as usize]).collect();
-    let params = params(features, options, Layout::Patches { width, height, columns, rows });
+    let layout = Layout::Patches { width, height, columns, rows };
+    let params = options.params(features.size(), features.wrap(), layout);
     let grid =
         Grid { features, offsets: &offsets, columns, rows, patch: params.patch as i32, overlap: options.overlap };
     let shape = params.patch_path();
@@ -108,7 +80,7 @@ fn quilt(
         progress.advance(1);
     }
     progress.end();
-    Synthesis { params, offsets, seams }
+    Synthesis::new(params, offsets, seams)
 }
 
 /// Patches that have their place, and those among them whose cuts are known.
@@ -143,13 +115,13 @@ impl Grid<'_> {
         [cut(&left, self.overlap as usize), cut(&upper, self.overlap as usize)]
     }
 
-    fn texel(&self, patch: u32, x: i32, y: i32) -> super::features::Feature {
+    fn texel(&self, patch: u32, x: i32, y: i32) -> Feature {
         let [ox, oy] = self.offsets[patch as usize];
         self.features.at(i32::from(ox) + x, i32::from(oy) + y)
     }
 
     /// What lies under the overlap of patch `at` before it is placed, at its texel (x, y).
-    fn under(&self, at: u32, x: i32, y: i32, known: &[[Vec<u32>; 2]]) -> super::features::Feature {
+    fn under(&self, at: u32, x: i32, y: i32, known: &[[Vec<u32>; 2]]) -> Feature {
         let (columns, rows, patch, overlap) = (self.columns, self.rows, self.patch, self.overlap as i32);
         let cut = |patch: u32, which: usize, along: i32| {
             known.get(patch as usize).map(|cuts| cuts[which][(along + overlap) as usize] as i32 - overlap)

@@ -14,19 +14,17 @@
 //! - patches that show much the same as one near by are left out ([`Radii`]), or the eye finds the repetition; so are those
 //!   that would go on as the sample does for too long ([`Runs`]).
 
-use super::candidates::{Candidates, Likeness};
-use super::cut_errors::CutErrors;
-use super::runs::Runs;
-use super::strips::PairErrors;
+use super::candidates::{Candidates, Likeness, Runs};
+use super::pair_errors::{CutErrors, PairErrors};
 use crate::progress::Progress;
 use crate::rng::{ItemRng, Purpose};
 use rayon::prelude::*;
 
 /// Candidates whose cuts are looked at for a patch. Of 512² texels of scratches and an overlap of 24, 200 are no better.
-pub const SHORTLIST: usize = 64;
+pub(super) const SHORTLIST: usize = 64;
 
 /// How much, relatively, the error of a candidate rises when it has been used as often as candidates are on average.
-pub const CROWDING: f64 = 0.3;
+pub(super) const CROWDING: f64 = 0.3;
 
 /// How much larger than the least error, relatively, an error is that counts as equal to it.
 const SLACK: f64 = 0.1;
@@ -70,32 +68,32 @@ impl Radii {
 }
 
 /// The grid and what rules the choice.
-pub struct Choice<'a> {
+pub(super) struct Choice<'a> {
     /// Offsets to choose from.
-    pub candidates: &'a Candidates,
+    pub(super) candidates: &'a Candidates,
     /// Their errors over whole overlaps.
-    pub errors: &'a PairErrors,
+    pub(super) errors: &'a PairErrors,
     /// Their errors along cuts.
-    pub cuts: CutErrors<'a>,
+    pub(super) cuts: CutErrors<'a>,
     /// Columns of patches.
-    pub columns: u32,
+    pub(super) columns: u32,
     /// Rows of patches.
-    pub rows: u32,
+    pub(super) rows: u32,
     /// Mean distance of neighbours in the sample along rows and along columns.
-    pub units: [f64; 2],
+    pub(super) units: [f64; 2],
     /// Mean error along a cut, in units, up to which candidates are equally good.
-    pub tolerance: f64,
+    pub(super) tolerance: f64,
     /// What may not be near.
-    pub radii: Radii,
+    pub(super) radii: Radii,
     /// What may not follow.
-    pub runs: Runs,
+    pub(super) runs: Runs,
     /// Seed.
-    pub seed: u64,
+    pub(super) seed: u64,
 }
 
 impl Choice<'_> {
     /// The candidate of every patch, row by row.
-    pub fn run(&self, progress: &dyn Progress) -> Vec<u32> {
+    pub(super) fn run(&self, progress: &dyn Progress) -> Vec<u32> {
         let mut placed: Vec<u32> = Vec::with_capacity((self.columns * self.rows) as usize);
         let mut used = vec![0u32; self.candidates.len()];
         for at in 0..self.columns * self.rows {

@@ -1,14 +1,14 @@
 // Surfaces synthesised by patches: which texel of the sample a texel of the surface shows.
 // Tan et al. 2022, "Real-Time Microstructure Rendering with MIP-mapped Normal Map Samples", section 5.1.1; corner tiles for
-// surfaces without end. Integer twin of glint-bake-core synthesis/{eval,eval_tiles}.rs. A look-up reads one offset and at most
+// surfaces without end. A look-up reads one offset and at most
 // six entries of paths; there are no loops.
 //
 // Accessors that the including program defines:
 //   fn glint_synthesis_offset(patch_index: u32) -> vec2i    record of the section SYPO: sample texel at the patch's texel (0, 0)
 //   fn glint_synthesis_place(synthesis: GlintSynthesis, x: i32, y: i32) -> GlintSynthesisPlace
 //                                                           the patch that shows a texel of the surface, which goes on in all
-//                                                           directions: by glint_synthesis_grid.wgsl or
-//                                                           glint_synthesis_tiles.wgsl, as patches are arranged
+//                                                           directions: by synthesis::grid or
+//                                                           synthesis::tiles, as patches are arranged
 
 #import synthesis::paths
 

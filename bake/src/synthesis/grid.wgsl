@@ -1,7 +1,6 @@
-// Patches on a grid that repeats: one of the two arrangements, for glint_synthesis.wgsl. Tan et al. 2022, section 5.1.1. Twin of
-// glint-bake-core synthesis/eval.rs.
+// Patches on a grid that repeats: one of the two arrangements, for synthesis::eval. Tan et al. 2022, section 5.1.1.
 
-#import synthesis::eval
+#import synthesis::paths
 
 // Where the left (`which` 0) or upper (1) cut of a patch lies at its row (column) `along`: its first own texel.
 fn glint_synthesis_cut(synthesis: GlintSynthesis, patch_index: u32, which: u32, along: i32) -> i32 {

@@ -3,7 +3,10 @@
 use crate::error::{BakeError, Result};
 use crate::normal_map::NormalMap;
 use glint_formats::Wrap;
-use glint_formats::synthesis::{MAX_COLOURS, MAX_OVERLAP, MAX_PATCHES, MAX_SAMPLE_SIZE, MAX_VARIANTS, PATCH_RANGE};
+use glint_formats::synthesis::{
+    Layout, MAX_COLOURS, MAX_OVERLAP, MAX_PATCHES, MAX_SAMPLE_SIZE, MAX_SEAM_BYTES, MAX_VARIANTS, MeasuredError,
+    PATCH_RANGE, PathShape, SynthesisParams,
+};
 
 /// Most offsets among which patches are chosen.
 pub const MAX_CANDIDATES: u32 = 4096;
@@ -74,11 +77,11 @@ fn bad<T>(message: String) -> Result<T> {
     Err(BakeError::BadOption(message))
 }
 
-fn in_range(flag: &str, (low, high): (u32, u32), found: u32) -> Result<()> {
+fn in_range(option: &str, (low, high): (u32, u32), found: u32) -> Result<()> {
     if (low..=high).contains(&found) {
         return Ok(());
     }
-    bad(format!("{flag}: expected {low} to {high}, found {found}"))
+    bad(format!("{option}: expected {low} to {high}, found {found}"))
 }
 
 impl SynthesisOptions {
@@ -92,21 +95,21 @@ impl SynthesisOptions {
     /// Checks the options by themselves.
     ///
     /// # Errors
-    /// `BadOption` names the flag, what was found and what would work; `LimitExceeded` a surface of too many patches.
+    /// `BadOption` names the option, what was expected and what was found; `LimitExceeded` a surface of too many patches.
     pub fn validate(&self) -> Result<()> {
-        in_range("--patch", PATCH_RANGE, self.patch)?;
-        in_range("--overlap", (0, MAX_OVERLAP.min(self.patch / 2)), self.overlap)?;
+        in_range("patch", PATCH_RANGE, self.patch)?;
+        in_range("overlap", (0, MAX_OVERLAP.min(self.patch / 2)), self.overlap)?;
         if self.alignment == 0 || !self.patch.is_multiple_of(self.alignment) {
             let (patch, found) = (self.patch, self.alignment);
-            return bad(format!("--alignment: expected a divisor of the patch of {patch}, found {found}"));
+            return bad(format!("alignment: expected a divisor of the patch of {patch}, found {found}"));
         }
         if !(0.0..=1.0).contains(&self.alpha) {
-            return bad(format!("--alpha: expected 0 to 1, found {}", self.alpha));
+            return bad(format!("alpha: expected 0 to 1, found {}", self.alpha));
         }
         if !(self.error_tolerance >= 0.0 && self.error_tolerance <= 1e6) {
-            return bad(format!("--error-tolerance: expected 0 to 1e6, found {}", self.error_tolerance));
+            return bad(format!("error_tolerance: expected 0 to 1e6, found {}", self.error_tolerance));
         }
-        in_range("candidates", (1, MAX_CANDIDATES), self.max_candidates)?;
+        in_range("max_candidates", (1, MAX_CANDIDATES), self.max_candidates)?;
         match self.target {
             Target::Patches { width, height } => self.validate_size(width, height),
             Target::Unbounded { colours, variants } => self.validate_tiles(colours, variants),
@@ -115,27 +118,34 @@ impl SynthesisOptions {
 
     fn validate_size(&self, width: u32, height: u32) -> Result<()> {
         if width == 0 || height == 0 {
-            return bad(format!("--synthesize: expected one texel or more, found {width}x{height}"));
+            return bad(format!("synthesize: expected one texel or more, found {width}x{height}"));
         }
         let patches = u64::from(width.div_ceil(self.patch)) * u64::from(height.div_ceil(self.patch));
         if patches > MAX_PATCHES {
             return Err(BakeError::LimitExceeded(format!(
-                "--synthesize {width}x{height}: {patches} patches of {} texels, at most {MAX_PATCHES}; ask for a smaller \
+                "synthesize: {width}x{height} texels are {patches} patches of {} texels, at most {MAX_PATCHES}; ask for a smaller \
                  surface, larger patches, or an unbounded surface",
                 self.patch
+            )));
+        }
+        let bytes = 4 * self.most_records().1;
+        if bytes > MAX_SEAM_BYTES {
+            return Err(BakeError::LimitExceeded(format!(
+                "synthesize: {width}x{height} texels take {bytes} bytes of seams, at most {MAX_SEAM_BYTES}; ask for a smaller \
+                 surface, a smaller overlap, or an unbounded surface"
             )));
         }
         Ok(())
     }
 
     fn validate_tiles(&self, colours: u32, variants: u32) -> Result<()> {
-        in_range("corner colours", (1, MAX_COLOURS), colours)?;
+        in_range("colours", (1, MAX_COLOURS), colours)?;
         in_range("variants", (1, MAX_VARIANTS), variants)?;
         let needed = 2 * (self.margin() + 2 * self.overlap);
         if !self.patch.is_multiple_of(2) || self.patch < needed {
             let (overlap, found) = (self.overlap, self.patch);
             return bad(format!(
-                "--patch: corner tiles with an overlap of {overlap} need an even edge of {needed} or more, found {found}"
+                "patch: corner tiles with an overlap of {overlap} need an even edge of {needed} or more, found {found}"
             ));
         }
         Ok(())
@@ -154,7 +164,7 @@ impl SynthesisOptions {
         };
         if width.min(height) < needed {
             return Err(BakeError::BadInput(format!(
-                "the sample has {width}×{height} texels, and needs {needed} a side to hold {why}; give a smaller --patch \
+                "the sample has {width}×{height} texels, and needs {needed} a side to hold {why}; give a smaller patch \
                  or a larger sample"
             )));
         }
@@ -180,20 +190,43 @@ impl SynthesisOptions {
         self.overlap.next_multiple_of(self.alignment)
     }
 
-    /// Bytes of offsets and seams, at most; exact for a grid of patches.
+    /// Bytes of the sections of offsets and seams, at most; exact for a grid of patches.
     pub fn most_bytes(&self) -> u64 {
-        use glint_formats::synthesis::PathShape;
+        let (offsets, seams) = self.most_records();
+        // Buffers are a multiple of 16 bytes, and not empty.
+        4 * (offsets.next_multiple_of(4) + seams.max(1).next_multiple_of(4))
+    }
+
+    /// Offsets and words of seams, at most; exact for a grid of patches.
+    fn most_records(&self) -> (u64, u64) {
         let words = |entries: u32| u64::from(PathShape::new(entries, self.overlap).words);
         match self.target {
             Target::Patches { width, height } => {
                 let patches = u64::from(width.div_ceil(self.patch)) * u64::from(height.div_ceil(self.patch));
-                patches * 4 * (1 + 2 * words(self.patch + self.overlap))
+                (patches, patches * 2 * words(self.patch + self.overlap))
             }
             Target::Unbounded { colours, variants } => {
                 let tiles = u64::from(colours).pow(4) * u64::from(variants);
                 let pairs = u64::from(colours).pow(2) * 2 * words(2 * (self.margin() + self.overlap));
-                4 * (u64::from(colours) + tiles + pairs + tiles * 4 * words(self.patch))
+                (u64::from(colours) + tiles, pairs + tiles * 4 * words(self.patch))
             }
+        }
+    }
+
+    /// Parameters of a surface of a sample of this size with this layout, not yet measured.
+    pub(super) fn params(&self, (width, height): (u32, u32), wrap: Wrap, layout: Layout) -> SynthesisParams {
+        SynthesisParams {
+            sample_width: width,
+            sample_height: height,
+            wrap,
+            patch: self.patch,
+            overlap: self.overlap,
+            alignment: self.alignment,
+            alpha: self.alpha as f32,
+            error_tolerance: self.error_tolerance as f32,
+            seed: self.seed,
+            layout,
+            measured: MeasuredError::default(),
         }
     }
 

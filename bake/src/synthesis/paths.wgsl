@@ -1,5 +1,4 @@
-// Parameters of a synthesised surface, and the paths along which its patches meet. Twin of glint-bake-core synthesis/eval.rs and
-// glint-formats synthesis.rs.
+// Parameters of a synthesised surface, and the paths along which its patches meet.
 //
 // Accessors that the including program defines:
 //   fn glint_synthesis_seam_word(index: u32) -> u32         word of the section SYSE
@@ -7,7 +6,7 @@
 const GLINT_SYNTHESIS_PATCHES: u32 = 0u;
 const GLINT_SYNTHESIS_CORNER_TILES: u32 = 1u;
 
-// From the section SYPP.
+// A part of the section LOUB.
 struct GlintSynthesis {
     sample_width: u32,
     sample_height: u32,

@@ -1,7 +1,8 @@
-// Corner tiles, a surface without end: one of the two arrangements, for glint_synthesis.wgsl. Twin of glint-bake-core
-// synthesis/eval_tiles.rs, where it is described.
+// Corner tiles, a surface without end: one of the two arrangements, for synthesis::eval. Lagae and Dutre 2006, "An Alternative for
+// Wang Tiles": a tile is known by the colours of its corners, which are hashes of the lattice. A colour is a patch of the sample,
+// its middle at the corner; over four of them lies the tile's middle patch.
 
-#import synthesis::eval
+#import synthesis::paths
 #import hash
 
 // Uniform in 0 ... n - 1 (n <= 65536) from random bits.

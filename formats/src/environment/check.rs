@@ -1,9 +1,9 @@
 //! Checks the contents of environment sections: what a sampler and a counting model rely on.
 
-use crate::bytes::{f16_at, f32_at, u16_at};
+use crate::bytes::f16_at;
 use crate::container::full_mip_count;
 use crate::environment::{
-    ALBEDO, COLOURS, EnvironmentParams, INDICATORS, MAX_FACE_SIZE, MAX_LEVELS, PARAMS, RADIANCE, Storage,
+    ALBEDO, COLOURS, EnvironmentParams, INDICATORS, MAX_FACE_SIZE, MAX_LEVELS, PARAMS, RADIANCE, UNIFORM,
 };
 use crate::issue::{Issue, IssueCode};
 use crate::sections::{Loaded, Sections};
@@ -13,10 +13,11 @@ pub(crate) fn check(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
     for section in sections.of_kind(PARAMS) {
         check_environment(sections, section, issues);
     }
-    sections.report_orphans(&[RADIANCE, INDICATORS, COLOURS, ALBEDO], PARAMS, issues);
+    sections.report_orphans(&[UNIFORM, RADIANCE, INDICATORS, COLOURS, ALBEDO], PARAMS, issues);
 }
 
 fn check_environment(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec<Issue>) {
+    let uniform = sections.need(UNIFORM, section, issues);
     let radiance = sections.need(RADIANCE, section, issues);
     let albedo = sections.need(ALBEDO, section, issues);
     let Some(params) = section.parameters::<EnvironmentParams>(issues) else { return };
@@ -29,15 +30,20 @@ fn check_environment(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut 
         return;
     }
     let shape = IssueCode::EnvironmentShape;
+    if let Some(uniform) = uniform
+        && uniform.expect(shape, params.uniform_resource(), issues)
+    {
+        check_uniform(uniform, &params, issues);
+    }
     if let Some(radiance) = radiance
         && radiance.expect(shape, params.radiance_resource(), issues)
     {
-        check_values(radiance, params.storage == Storage::F32, IssueCode::EnvironmentRadiance, issues);
+        check_values(radiance, IssueCode::EnvironmentRadiance, issues);
     }
     if let Some(albedo) = albedo
         && albedo.expect(shape, params.albedo_resource(), issues)
     {
-        check_values(albedo, false, IssueCode::EnvironmentAlbedo, issues);
+        check_values(albedo, IssueCode::EnvironmentAlbedo, issues);
     }
     if params.levels.len() > 1
         && let Some(indicators) = sections.need(INDICATORS, section, issues)
@@ -104,16 +110,21 @@ fn check_levels(levels: &[f64]) -> Result<(), String> {
     Ok(())
 }
 
-/// One stored number.
-fn number(bytes: &[u8]) -> f32 {
-    if bytes.len() == 2 { f16_at(bytes, 0) } else { f32_at(bytes, 0) }
+/// Reports the first number of the uniform that is not what the parameters say. Numbers are compared by their bits.
+fn check_uniform(section: Loaded<'_>, params: &EnvironmentParams, issues: &mut Vec<Issue>) {
+    let expected = params.uniform();
+    let differs = |(found, expected): (&[u8], &[u8])| found != expected;
+    let pairs = section.payload.chunks_exact(4).zip(bytemuck::bytes_of(&expected).chunks_exact(4));
+    if let Some(at) = pairs.map(differs).position(|differs| differs) {
+        let message = format!("expected what the parameters say, found another number at byte {}", 4 * at);
+        issues.push(section.error(IssueCode::EnvironmentUniform, message));
+    }
 }
 
 /// Reports the first number that is negative or not finite.
-fn check_values(section: Loaded<'_>, wide: bool, code: IssueCode, issues: &mut Vec<Issue>) {
-    let bytes = if wide { 4 } else { 2 };
-    for (i, chunk) in section.payload.chunks_exact(bytes).enumerate() {
-        let value = number(chunk);
+fn check_values(section: Loaded<'_>, code: IssueCode, issues: &mut Vec<Issue>) {
+    for (i, chunk) in section.payload.chunks_exact(2).enumerate() {
+        let value = f16_at(chunk, 0);
         if !(value >= 0.0 && value.is_finite()) {
             let message = format!(
                 "component {} of texel {}: expected a finite number that is not negative, found {value}",
@@ -130,14 +141,7 @@ fn check_values(section: Loaded<'_>, wide: bool, code: IssueCode, issues: &mut V
 fn check_indicators(section: Loaded<'_>, params: &EnvironmentParams, issues: &mut Vec<Issue>) {
     let layers = params.indicator_layers() as usize;
     let bytes = section.payload;
-    let component = if params.storage == Storage::F32 { 4 } else { 2 };
-    let value = |texel: usize, c: usize| {
-        let at = (4 * texel + c) * component;
-        match params.storage {
-            Storage::Unorm16 => f64::from(u16_at(bytes, at)) / 65535.0,
-            _ => f64::from(number(&bytes[at..at + component])),
-        }
-    };
+    let value = |texel: usize, c: usize| f64::from(f16_at(bytes, 2 * (4 * texel + c)));
     let mut first = 0;
     for mip in 0..params.mips() {
         let texels = 6 * ((params.face_size >> mip).max(1) as usize).pow(2);
@@ -152,8 +156,7 @@ fn check_indicators(section: Loaded<'_>, params: &EnvironmentParams, issues: &mu
                     sum += share;
                 }
             }
-            // Sixteen-bit UNORM adds up in units of 1/65535, which f64 rounds.
-            if !sound || sum > 1.0 + 1e-12 {
+            if !sound || sum > 1.0 {
                 let message = format!(
                     "texel {texel} of mip {mip}: expected shares that are not negative and add up to 1 at most, found \
                      a sum of {sum}"

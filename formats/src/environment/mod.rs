@@ -6,6 +6,7 @@
 
 pub(crate) mod check;
 
+use crate::binding::{Binding, View};
 use crate::container::{FourCc, KnownKind, Resource};
 use crate::vk_format;
 use bytemuck::{Pod, Zeroable};
@@ -13,10 +14,12 @@ use serde::{Deserialize, Serialize};
 
 /// Parameters of an environment: [`EnvironmentParams`], bincode.
 pub const PARAMS: FourCc = FourCc(*b"ENPP");
-/// Prefiltered radiance: cube texture, R G B over [`EnvironmentParams::radiance_scale`]; alpha is the root mean square
+/// What shaders bind of the parameters: buffer of one [`EnvironmentUniform`].
+pub const UNIFORM: FourCc = FourCc(*b"ENUB");
+/// Prefiltered radiance: cube texture of half floats, R G B over [`EnvironmentParams::radiance_scale`]; alpha is the root mean square
 /// of the luminance under the same filter, on the same scale.
 pub const RADIANCE: FourCc = FourCc(*b"ENRA");
-/// Prefiltered indicators of levels 1, 2, …: cube texture, component c of layer l is level 4 l + c + 1. The darkest
+/// Prefiltered indicators of levels 1, 2, …: cube texture of half floats, component c of layer l is level 4 l + c + 1. The darkest
 /// level, level 0, is what is left of 1.
 pub const INDICATORS: FourCc = FourCc(*b"ENIN");
 /// Mean colour of levels 1, 2, … under the filter, each of luminance 1: cube texture, layer l is level l + 1.
@@ -30,11 +33,23 @@ pub const ALBEDO: FourCc = FourCc(*b"ENAL");
 /// The kinds of sections of this method.
 pub(crate) const KINDS: &[KnownKind] = &[
     KnownKind::first(PARAMS, "environment parameters"),
+    KnownKind::first(UNIFORM, "environment uniform"),
     KnownKind::first(RADIANCE, "environment radiance"),
     KnownKind::first(INDICATORS, "environment indicators"),
     KnownKind::first(COLOURS, "environment colours"),
     KnownKind::first(ALBEDO, "environment albedo"),
 ];
+/// The bind group of `bind_environment.wgsl`.
+pub const BINDINGS: &[Binding] = &[
+    Binding::Uniform(UNIFORM),
+    Binding::Texture(RADIANCE, View::FloatCube),
+    Binding::Texture(INDICATORS, View::FloatCubeArray),
+    Binding::Texture(COLOURS, View::FloatCubeArray),
+    Binding::Texture(ALBEDO, View::Float2d),
+    Binding::ClampSampler,
+];
+/// VkFormat of radiance and indicators: R16G16B16A16_SFLOAT.
+pub const CUBE_VK_FORMAT: u32 = vk_format::R16G16B16A16_SFLOAT;
 /// VkFormat of the albedo table: R16G16B16A16_SFLOAT.
 pub const ALBEDO_VK_FORMAT: u32 = vk_format::R16G16B16A16_SFLOAT;
 /// VkFormat of level colours: E5B9G9R9_UFLOAT_PACK32.
@@ -63,18 +78,6 @@ pub enum LevelChoice {
     Optimal,
     /// The paper's: evenly in the logarithm of radiance.
     LogUniform,
-}
-
-/// How texels of radiance and indicators are stored.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Storage {
-    /// Both as half floats.
-    F16,
-    /// Both as floats.
-    F32,
-    /// Indicators as 16-bit UNORM, radiance as half floats.
-    Unorm16,
 }
 
 /// Error of the stored texels against sums over the source image in f64.
@@ -109,8 +112,6 @@ pub struct EnvironmentParams {
     pub face_size: u32,
     /// Filter.
     pub kernel: Kernel,
-    /// Storage.
-    pub storage: Storage,
     /// GGX roughness α of each mip, rising from 0.
     pub roughness: Vec<f64>,
     /// Stored radiance times this is radiance; exact in f32. Where a sun is a few texels, it is chosen so that they round
@@ -183,23 +184,19 @@ impl EnvironmentParams {
         (self.levels.len().max(1) as u32 - 1).div_ceil(4)
     }
 
+    /// Descriptor of the uniform.
+    pub fn uniform_resource(&self) -> Resource {
+        Resource::Buffer { stride: size_of::<EnvironmentUniform>() as u32, count: 1 }
+    }
+
     /// Descriptor of the radiance.
     pub fn radiance_resource(&self) -> Resource {
-        let vk_format = match self.storage {
-            Storage::F32 => vk_format::R32G32B32A32_SFLOAT,
-            Storage::F16 | Storage::Unorm16 => vk_format::R16G16B16A16_SFLOAT,
-        };
-        self.cube(vk_format, 1)
+        self.cube(CUBE_VK_FORMAT, 1)
     }
 
     /// Descriptor of the indicators.
     pub fn indicators_resource(&self) -> Resource {
-        let vk_format = match self.storage {
-            Storage::F32 => vk_format::R32G32B32A32_SFLOAT,
-            Storage::F16 => vk_format::R16G16B16A16_SFLOAT,
-            Storage::Unorm16 => vk_format::R16G16B16A16_UNORM,
-        };
-        self.cube(vk_format, self.indicator_layers())
+        self.cube(CUBE_VK_FORMAT, self.indicator_layers())
     }
 
     /// Descriptor of the level colours.

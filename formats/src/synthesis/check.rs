@@ -7,8 +7,8 @@ use crate::lobes::{self, LobesParams, LobesUniform};
 use crate::params;
 use crate::sections::{Loaded, Sections};
 use crate::synthesis::{
-    Layout, MAX_COLOURS, MAX_OVERLAP, MAX_PATCHES, MAX_SAMPLE_SIZE, MAX_VARIANTS, OFFSETS, PARAMS, PATCH_RANGE,
-    PathShape, SEAMS, SynthesisParams,
+    Layout, MAX_COLOURS, MAX_OVERLAP, MAX_PATCHES, MAX_SAMPLE_SIZE, MAX_SEAM_BYTES, MAX_VARIANTS, OFFSETS, PARAMS,
+    PATCH_RANGE, PathShape, SEAMS, SynthesisParams,
 };
 use crate::wrap::Wrap;
 use serde::de::DeserializeOwned;
@@ -31,14 +31,16 @@ fn check_synthesis(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Ve
     }
     let shape = IssueCode::SynthesisShape;
     if let Some(offsets) = offsets
-        && offsets.expect(shape, Resource::Buffer { stride: 4, count: params.offset_count() }, issues)
+        && offsets.expect(shape, Resource::Buffer { stride: 4, count: params.stored_offsets() }, issues)
     {
         check_offsets(offsets, &params, issues);
+        check_end(offsets, params.offset_count(), issues);
     }
     if let Some(seams) = seams
-        && seams.expect(shape, Resource::Buffer { stride: 4, count: params.seam_words() }, issues)
+        && seams.expect(shape, Resource::Buffer { stride: 4, count: params.stored_seam_words() }, issues)
     {
         check_seams(seams, &params, issues);
+        check_end(seams, params.seam_words(), issues);
     }
 }
 
@@ -105,13 +107,25 @@ fn check_layout(params: &SynthesisParams) -> Result<(), String> {
     if params.offset_count() > MAX_PATCHES {
         return Err(format!("expected {MAX_PATCHES} patches at most, found {}", params.offset_count()));
     }
+    if 4 * params.stored_seam_words() > MAX_SEAM_BYTES {
+        let found = 4 * params.stored_seam_words();
+        return Err(format!("expected {MAX_SEAM_BYTES} bytes of seam paths at most, found {found}"));
+    }
     Ok(())
+}
+
+/// Reports bytes after the `count` words of a buffer that are not 0.
+fn check_end(section: Loaded<'_>, count: u64, issues: &mut Vec<Issue>) {
+    if section.payload.iter().skip(4 * count as usize).any(|byte| *byte != 0) {
+        let message = format!("expected zeros after {count} records of 4 bytes");
+        issues.push(section.error(IssueCode::SynthesisPadding, message));
+    }
 }
 
 /// Reports the first offset whose patch does not lie in the sample.
 fn check_offsets(section: Loaded<'_>, params: &SynthesisParams, issues: &mut Vec<Issue>) {
     let sides = [params.sample_width, params.sample_height];
-    for (at, bytes) in section.payload.chunks_exact(4).enumerate() {
+    for (at, bytes) in section.payload.chunks_exact(4).take(params.offset_count() as usize).enumerate() {
         let offset = [u16_at(bytes, 0), u16_at(bytes, 2)];
         let sound = offset.iter().zip(sides).all(|(&found, side)| {
             let found = u32::from(found);

@@ -13,11 +13,13 @@ use serde::{Deserialize, Serialize};
 
 /// Parameters of a synthesis: [`SynthesisParams`], bincode.
 pub const PARAMS: FourCc = FourCc(*b"SYPP");
-/// Patch offsets: buffer of two u16 (x, y), stride 4: the sample texel at a patch's texel (0, 0).
+/// Patch offsets: buffer of two u16 (x, y), stride 4: the sample texel at a patch's texel (0, 0). Zeros follow to a multiple of 16
+/// bytes, so that every host binds the buffer whole: see [`SynthesisParams::stored_offsets`].
 ///
 /// [`Layout::Patches`]: row by row. [`Layout::CornerTiles`]: first one a corner colour, then one a tile and variant.
 pub const OFFSETS: FourCc = FourCc(*b"SYPO");
-/// Seam paths: buffer of u32, stride 4, see [`SynthesisParams::seam_words`] and [`PathShape`].
+/// Seam paths: buffer of u32, stride 4, see [`SynthesisParams::seam_words`] and [`PathShape`]. Zeros follow to a multiple of 16 bytes,
+/// 16 bytes at least: see [`SynthesisParams::stored_seam_words`].
 pub const SEAMS: FourCc = FourCc(*b"SYSE");
 
 /// The kinds of sections of this method.
@@ -35,6 +37,8 @@ pub const PATCH_RANGE: (u32, u32) = (4, 1024);
 pub const MAX_OVERLAP: u32 = 64;
 /// Most patches of a surface.
 pub const MAX_PATCHES: u64 = 1 << 20;
+/// Most bytes of seam paths: what a storage buffer may hold on every GPU.
+pub const MAX_SEAM_BYTES: u64 = 128 << 20;
 /// Most corner colours.
 pub const MAX_COLOURS: u32 = 4;
 /// Most variants of a tile.
@@ -110,7 +114,8 @@ pub const PATCHES: u32 = 0;
 /// [`SynthesisUniform::arrangement`] of [`Layout::CornerTiles`].
 pub const CORNER_TILES: u32 = 1;
 
-/// `GlintSynthesis` of the shaders, a part of the section [`crate::lobes::UNIFORM`] of the same name: all that a look-up needs to know besides offsets and seams.
+/// What the section [`crate::lobes::UNIFORM`] of the same name holds of a synthesis, `GlintSynthesis` of the shaders: all that a
+/// look-up needs to know besides offsets and seams. 64 bytes.
 /// Fields that the arrangement has no use for are 0.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
@@ -224,7 +229,7 @@ impl SynthesisParams {
         PathShape::new(self.patch - 2 * margin, self.overlap)
     }
 
-    /// Records of [`OFFSETS`].
+    /// Patches, each with an offset.
     pub fn offset_count(&self) -> u64 {
         match self.layout {
             Layout::Patches { columns, rows, .. } => u64::from(columns) * u64::from(rows),
@@ -234,7 +239,17 @@ impl SynthesisParams {
         }
     }
 
-    /// Records of [`SEAMS`]. [`Layout::Patches`]: two paths a patch. [`Layout::CornerTiles`]: for each pair (a, b) of
+    /// Records of [`OFFSETS`] as they are stored: with zeros to a multiple of 16 bytes.
+    pub fn stored_offsets(&self) -> u64 {
+        self.offset_count().next_multiple_of(4)
+    }
+
+    /// Records of [`SEAMS`] as they are stored: with zeros to a multiple of 16 bytes, and 16 bytes at least.
+    pub fn stored_seam_words(&self) -> u64 {
+        self.seam_words().max(1).next_multiple_of(4)
+    }
+
+    /// Words of seam paths. [`Layout::Patches`]: two paths a patch. [`Layout::CornerTiles`]: for each pair (a, b) of
     /// colours, at a · C + b, the path where b lies right of a and the one where b lies below a; then four paths a tile
     /// and variant.
     pub fn seam_words(&self) -> u64 {

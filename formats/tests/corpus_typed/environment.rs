@@ -33,6 +33,7 @@ pub fn cases() -> Vec<Case> {
         case(IssueCode::EnvironmentRadiance, environment_with(environment::RADIANCE, infinite)),
         case(IssueCode::EnvironmentIndicators, environment_with_indicators(|indicators| indicators[5] = 0x3c00)),
         case(IssueCode::EnvironmentAlbedo, environment_with(environment::ALBEDO, infinite)),
+        case(IssueCode::EnvironmentUniform, environment_with(environment::UNIFORM, |section| section.payload[132] = 3)),
     ]
 }
 
@@ -73,9 +74,14 @@ fn every_way_an_environment_can_be_wrong_is_found() {
         assert_eq!(codes(&bytes), [IssueCode::EnvironmentIndicators], "{at} {bits:#x}");
     }
     assert_eq!(codes(&environment_with_indicators(|indicators| indicators[0] = 0x3a00)), []);
+    for at in (0..144).step_by(4) {
+        let bytes = environment_with(environment::UNIFORM, |section| section.payload[at] ^= 1);
+        assert_eq!(codes(&bytes), [IssueCode::EnvironmentUniform], "byte {at}");
+    }
     let sections = || environment_sections(&environment_params(), &environment_indicators(), 0x3c00);
-    for kind in [environment::RADIANCE, environment::INDICATORS, environment::COLOURS, environment::ALBEDO] {
+    let textures = [environment::RADIANCE, environment::INDICATORS, environment::COLOURS, environment::ALBEDO];
+    for kind in textures.into_iter().chain([environment::UNIFORM]) {
         assert_eq!(codes(&pack(without(sections(), kind))), [IssueCode::MissingSection], "{kind}");
     }
-    assert_eq!(codes(&pack(without(sections(), environment::PARAMS))), [IssueCode::OrphanSection; 4]);
+    assert_eq!(codes(&pack(without(sections(), environment::PARAMS))), [IssueCode::OrphanSection; 5]);
 }

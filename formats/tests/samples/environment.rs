@@ -8,7 +8,6 @@ pub fn environment_params() -> EnvironmentParams {
     EnvironmentParams {
         face_size: 2,
         kernel: environment::Kernel::Ndf,
-        storage: environment::Storage::F16,
         roughness: vec![0.0, 1.0],
         radiance_scale: 1.0,
         levels: vec![0.0, 1.0, 4.0],
@@ -35,13 +34,14 @@ pub fn environment_indicators() -> Vec<u16> {
     [0x3800, 0x3400, 0, 0].repeat(30)
 }
 
-/// The five sections of an environment whose radiance and albedo are all `value`.
+/// The six sections of an environment whose radiance and albedo are all `value`.
 pub fn environment_sections(params: &EnvironmentParams, indicators: &[u16], value: u16) -> Vec<Section> {
     let sound = environment_params();
     let halves = |count: usize| bytemuck::cast_slice(&vec![value; count]).to_vec();
     let texture = |kind, resource, payload| Section::texture(kind, "sky", resource, payload);
     vec![
         Section::parameters(environment::PARAMS, "sky", params),
+        Section::buffer(environment::UNIFORM, "sky", &[params.uniform()]),
         texture(environment::RADIANCE, sound.radiance_resource(), halves(120)),
         texture(environment::INDICATORS, sound.indicators_resource(), bytemuck::cast_slice(indicators).to_vec()),
         texture(environment::COLOURS, sound.colours_resource(), vec![0x80; 240]),

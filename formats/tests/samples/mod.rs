@@ -59,7 +59,7 @@ pub fn full_pack() -> Vec<u8> {
     sections.extend(good_ndf_maps());
     sections.extend(placement(&palette(), &noise_texels()));
     sections.push(Section::parameters(LAYERS, "coated rock", &layered()));
-    sections.extend(dictionary_sections(&dictionary_params(), &dictionary_table()));
+    sections.extend(good_dictionary());
     sections.extend(environment_sections(&environment_params(), &environment_indicators(), 0x3c00));
     sections.extend(good_area_light());
     sections.extend(good_lobes());

@@ -34,6 +34,6 @@ pub fn surface_sections(lobes: &LobesParams, synthesis: &SynthesisParams) -> Vec
         Section::buffer(lobes::LOBES, "gold", &[packed_lobes()[0]; 5]),
         Section::buffer(lobes::NORMALS, "gold", &normals),
     ];
-    sections.extend(synthesis_sections(synthesis, &[[4, 4]; 2], &synthesis_seams()));
+    sections.extend(synthesis_sections(synthesis, &[[4, 4], [4, 4], [0; 2], [0; 2]], &synthesis_seams()));
     sections
 }

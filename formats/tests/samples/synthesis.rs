@@ -27,9 +27,9 @@ pub fn corner_tile_params() -> SynthesisParams {
     SynthesisParams { sample_width: 12, sample_height: 12, patch: 10, overlap: 2, layout, ..synthesis_params() }
 }
 
-/// Offsets of [`synthesis_params`].
+/// Offsets of [`synthesis_params`], and zeros to 16 bytes.
 pub fn synthesis_offsets() -> Vec<[u16; 2]> {
-    vec![[2, 2], [4, 2]]
+    vec![[2, 2], [4, 2], [0; 2], [0; 2]]
 }
 
 /// Paths of [`synthesis_params`]: six entries of one bit in a word, left and upper of each patch.

@@ -34,6 +34,8 @@ pub struct Args {
     #[arg(long, value_name = "NAME")]
     pub only: Vec<String>,
     /// Do nothing; end with code 7 when a pack is not up to date
+    ///
+    /// What is not up to date is said, and why.
     #[arg(long, conflicts_with_all = ["dry_run", "depfile"])]
     pub check: bool,
     /// Threads to use [default: one a core]
@@ -41,6 +43,8 @@ pub struct Args {
     #[arg(help_heading = "Run")]
     pub threads: Option<u32>,
     /// Packs to work on at a time; memory grows with it [default: as many as threads, at most 4]
+    ///
+    /// Memory does not grow with the number of packs.
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
     #[arg(help_heading = "Run")]
     pub in_flight: Option<usize>,

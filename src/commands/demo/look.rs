@@ -6,7 +6,7 @@ use crate::info::Report;
 use crate::methods::ndf_maps::info::LayersInfo;
 use crate::preview::{Camera, Layer, Object, Scene, Shape, Surface, render};
 use glam::Vec3;
-use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::sections;
 use std::path::Path;
 

@@ -39,6 +39,8 @@ pub struct Args {
     #[arg(long, value_name = "FORMAT")]
     pub to: Target,
     /// Only sections of this kind, as in ENRA; may be given more than once
+    ///
+    /// Parameters are in the JSON all the same.
     #[arg(long, value_name = "KIND")]
     pub section: Vec<String>,
     /// Only sections of this name; may be given more than once

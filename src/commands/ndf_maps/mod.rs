@@ -10,7 +10,7 @@ use crate::cli::Terminal;
 use crate::exit::Failure;
 use crate::pack::{self, Baked};
 use crate::progress::Stages;
-use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use plan::Plan;

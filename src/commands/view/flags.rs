@@ -31,6 +31,8 @@ pub struct Args {
 #[command(next_help_heading = "Without a window")]
 pub struct PictureFlags {
     /// Write a picture (PNG) and open no window
+    ///
+    /// The same adapter gives the same bytes.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["turntable", "bench", "list"])]
     pub headless: Option<PathBuf>,
     /// Write pictures from all around, --frames of them, into this folder
@@ -40,6 +42,8 @@ pub struct PictureFlags {
     #[arg(long, conflicts_with = "list")]
     pub bench: bool,
     /// Pictures of --turntable; frames of --bench; with a window, frames until it closes
+    ///
+    /// The median of frames counts. The defaults are 36 pictures, 20 frames, and no end.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub frames: Option<u32>,
     /// Frames that a picture is the mean of, for smooth edges and for references
@@ -69,6 +73,8 @@ pub struct ViewFlags {
     #[arg(long, value_name = "METHOD")]
     pub method: Option<String>,
     /// What to compare it with: another entry of --list, or reference
+    ///
+    /// The reference is the method's own brute force.
     #[arg(long, value_name = "METHOD")]
     pub against: Option<String>,
     /// How to compare
@@ -78,9 +84,14 @@ pub struct ViewFlags {
     #[arg(long, conflicts_with = "against")]
     pub reference: bool,
     /// False colours in place of radiance
+    ///
+    /// Blue to red: footprints from 1/8 to 64 texels, level of detail 0 to 10, look-ups 0 to 1023, operations 0 to
+    /// 65535.
     #[arg(long, value_name = "WHAT", default_value = "none")]
     pub overlay: OverlayKind,
     /// Exposure in stops
+    ///
+    /// Radiance is multiplied by 2 to this.
     #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_hyphen_values = true, value_parser = values::finite)]
     pub exposure: f32,
     /// From radiance to what a display can show
@@ -153,6 +164,8 @@ pub struct MaterialFlags {
     #[arg(long, value_name = "R,G,B", value_parser = values::reflectance3)]
     pub colour: Vec<[f32; 3]>,
     /// Lobes of directional roughness of area lights, 0 to 9
+    ///
+    /// 0 is round.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=9))]
     pub lobes: Option<u32>,
     /// Surfaces with different seeds have different glints

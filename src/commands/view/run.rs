@@ -11,7 +11,7 @@ use glint_formats::{Limits, Pack};
 use glint_view::bench::{BenchSettings, Setup, measure, table};
 use glint_view::gpu::{Gpu, GpuError, Wish};
 use glint_view::render::{
-    LightKind, Material, Overlay, Picture, Renderer, SWAP_LAYERS, Shown, ToneMapping, View, picture,
+    LightKind, Material, Method, Overlay, Picture, Renderer, SWAP_LAYERS, Shown, ToneMapping, View, picture,
 };
 use glint_view::scene::{Mesh, MeshError, Orbit, Placement};
 use glint_view::settings::{Against, Layout, Settings};
@@ -162,7 +162,10 @@ fn entry_name(shown: &Shown) -> String {
 fn list(gpu: &Gpu, subjects: &Subjects) -> String {
     let mut text = format!("adapter  {}\n", gpu.adapter_line());
     for shown in &subjects.shown {
-        text.push_str(&format!("{}  {} bytes on the GPU\n", entry_name(shown), shown.data.bytes));
+        // What an environment shows is what lights the scene.
+        let environment = subjects.environment.as_ref().filter(|_| shown.method == Method::Environment);
+        let bytes = environment.unwrap_or(&shown.data).bytes;
+        text.push_str(&format!("{}  {bytes} bytes on the GPU\n", entry_name(shown)));
     }
     text
 }

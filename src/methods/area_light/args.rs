@@ -42,6 +42,8 @@ pub struct Args {
     #[arg(long, value_name = "FORMAT", default_value = "f16", help_heading = "Bake")]
     pub format: Format,
     /// Leave out so many of the finest mips, 0 to 14, for maps that are never seen closer
+    ///
+    /// The pack is then of a map smaller by 2^N.
     #[arg(long, value_name = "N", default_value = "0", value_parser = clap::value_parser!(u32).range(0..=14))]
     #[arg(help_heading = "Bake")]
     pub skip_mips: u32,
@@ -76,6 +78,7 @@ impl Args {
                 Format::Snorm8 => NormalStorage::Snorm8,
             },
             skip_mips: self.skip_mips,
+            max_memory: self.run.max_memory,
         }
     }
 

@@ -66,12 +66,15 @@ fn sheet(texels: &Texels, colour: impl Fn([f64; 4]) -> [u8; 3]) -> Canvas {
     canvas
 }
 
+/// Makes a picture of a texture.
+type Draw = fn(&Texels) -> Canvas;
+
 /// Pictures of every material: mean normals, roughness, and roughness by direction.
 ///
 /// # Errors
 /// Those of `write`.
 pub fn write_all(pack: &Pack, write: &mut WritePlot<'_>) -> Result<(), Failure> {
-    let pictures: [(FourCc, &str, fn(&Texels) -> Canvas); 3] =
+    let pictures: [(FourCc, &str, Draw); 3] =
         [(NORMALS, "mean-normals", normals), (NORMALS, "roughness", roughness), (ROUGHNESS, "directions", directions)];
     for (stem, name) in stems(pack, PARAMS) {
         for (kind, what, draw) in pictures {

@@ -5,8 +5,9 @@ mod bake;
 mod info;
 mod plot;
 
+use super::bake::{Bake, FinishedPack};
 use super::contents::{Field, ParameterKind};
-use super::method::{Bake, FinishedPack, Method, command, parse};
+use super::method::{Method, command, parse};
 
 use super::plots::WritePlot;
 use crate::cli::Terminal;

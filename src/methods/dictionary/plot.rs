@@ -3,9 +3,9 @@
 use crate::exit::{Exit, Failure};
 use crate::methods::plots::{WritePlot, stems};
 use crate::plot::{Axis, Colour, Figure, Panel, Series};
+use glint_bake_core::dictionary::Dictionary;
 use glint_bake_core::dictionary::quality::{mean_table, target_density};
 use glint_bake_core::dictionary::sections;
-use glint_bake_core::dictionary::tables::Dictionary;
 use glint_formats::Pack;
 use glint_formats::dictionary::PARAMS;
 

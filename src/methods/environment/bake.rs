@@ -4,7 +4,8 @@ use super::args::Args;
 use crate::cli::Terminal;
 use crate::exit::Failure;
 use crate::input::environment::{LoadedEnvironment, load_environment};
-use crate::methods::method::{FinishedPack, provenance};
+use crate::methods::bake::FinishedPack;
+use crate::methods::method::provenance;
 use crate::pack;
 use crate::progress::Stages;
 use crate::quantities::kib;
@@ -68,7 +69,7 @@ fn warn_of_rounding(params: &EnvironmentParams, input: &Path, terminal: Terminal
         if *rounding > most {
             terminal.warn(&format!(
                 "{}: mip {mip}: half floats alone make an error of {rounding:.4} of the mean, more than the {most} asked; \
-                 give --format f32",
+                 give a larger --max-error",
                 input.display()
             ));
         }

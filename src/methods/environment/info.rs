@@ -2,7 +2,7 @@
 
 use crate::methods::contents::{Item, decode_all};
 use crate::quantities::{kib, percent};
-use glint_formats::environment::{ALBEDO, COLOURS, EnvironmentParams, INDICATORS, PARAMS, RADIANCE};
+use glint_formats::environment::{ALBEDO, COLOURS, EnvironmentParams, INDICATORS, PARAMS, RADIANCE, UNIFORM};
 use glint_formats::{Pack, SectionEntry};
 use serde::Serialize;
 use std::fmt::Write;
@@ -14,7 +14,7 @@ pub struct EnvironmentInfo {
     pub name: String,
     /// Its parameters.
     pub params: EnvironmentParams,
-    /// Bytes of all its textures once decompressed.
+    /// Bytes that a GPU holds of it: all its sections but the parameters, decompressed.
     pub texture_bytes: u64,
 }
 
@@ -22,8 +22,8 @@ impl EnvironmentInfo {
     /// Describes every environment of a sound pack.
     pub fn all_of(pack: &Pack) -> Vec<EnvironmentInfo> {
         let describe = |(entry, params): (&SectionEntry, EnvironmentParams)| {
-            let textures = [RADIANCE, INDICATORS, COLOURS, ALBEDO];
-            let bytes = textures.iter().filter_map(|kind| Some(pack.find(*kind, &entry.name)?.raw_len)).sum();
+            let bound = [UNIFORM, RADIANCE, INDICATORS, COLOURS, ALBEDO];
+            let bytes = bound.iter().filter_map(|kind| Some(pack.find(*kind, &entry.name)?.raw_len)).sum();
             EnvironmentInfo { name: entry.name.clone(), params, texture_bytes: bytes }
         };
         decode_all(pack, PARAMS).into_iter().map(describe).collect()
@@ -79,13 +79,8 @@ impl Item for EnvironmentInfo {
         let [r, g, b] = params.mean_radiance;
         let _ = writeln!(out, "  mean         {r:.5}, {g:.5}, {b:.5}");
         let _ = writeln!(out, "  filter       {}, error {} of the mean asked", kebab(&params.kernel), params.max_error);
-        let _ = writeln!(
-            out,
-            "  storage      {}, radiance over {}, {}",
-            kebab(&params.storage),
-            params.radiance_scale,
-            kib(self.texture_bytes)
-        );
+        let _ =
+            writeln!(out, "  storage      f16, radiance over {}, {}", params.radiance_scale, kib(self.texture_bytes));
         let _ = writeln!(out, "  energy       {:.1e} from that of the source", measured.energy);
         let levels: Vec<String> = params.levels.iter().map(|level| format!("{level:.5}")).collect();
         let colours = if params.coloured { ", with colours" } else { "" };

@@ -6,9 +6,10 @@ mod info;
 mod plan;
 mod plot;
 
+use super::bake::{Bake, Candidates, FinishedPack};
 use super::contents::{Field, ParameterKind};
-use super::method::{Bake, FinishedPack, Method, command, parse};
-use super::planning::{Candidates, Planning, Request};
+use super::method::{Method, command, parse};
+use super::planning::{Planning, Request};
 use super::plots::WritePlot;
 use crate::cli::Terminal;
 use crate::delivery::Delivery;

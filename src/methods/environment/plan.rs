@@ -3,7 +3,8 @@
 use super::args::{Args, LEVELS_AUTO};
 use super::bake::draft;
 use crate::exit::Failure;
-use crate::methods::planning::{Candidates, Request, USED};
+use crate::methods::bake::Candidates;
+use crate::methods::planning::{Request, USED};
 use glam::DVec3;
 use glint_bake_core::environment::eval::environment_mip;
 use glint_bake_core::environment::image::luminance;
@@ -42,7 +43,7 @@ pub fn candidates(args: &Args, request: &Request<'_>) -> Result<Candidates, Fail
         let mut choice = request.choice(base.clone());
         choice.choose("face-size", size, |args| args.face_size = size);
         // A number of levels leaves no error to ask for.
-        if !request.gives("levels") {
+        if !request.fixes("levels") {
             choice.choose("levels", LEVELS_AUTO, |args| args.levels = 0);
             choice.choose("max-moment-error", request.budget, |args| args.max_moment_error = request.budget);
         }

@@ -71,15 +71,22 @@ pub struct Reduction {
     #[arg(long, value_name = "N", default_value = "4")]
     pub seeds: u32,
     /// Take each texel's normal as it is, without filtering: for maps of flakes
+    ///
+    /// Neighbours of flakes have nothing between them.
     #[arg(long)]
     pub nearest: bool,
     /// How lobes are stored
     #[arg(long, value_name = "STORAGE", default_value = "packed")]
     pub storage: StorageArg,
-    /// Bits a channel of the stored normals
+    /// Bits a channel that stored normals are rounded to; 8 make smaller compressed packs
+    ///
+    /// Auto is 8 where rounding stays below 0.03 of the roughness, root mean square.
     #[arg(long, value_name = "BITS", default_value = "auto")]
     pub normals: NormalsArg,
     /// Error E1 asked of every footprint size that the bake measures, on average; missing it fails the bake
+    ///
+    /// Sizes are standard deviations of 2 to 32 texels, up to a quarter of the map's edge. When the bake misses it,
+    /// nothing is written and the exit code is 6.
     #[arg(long, value_name = "E1", value_parser = values::positive)]
     pub max_error: Option<f64>,
     /// Seed of random numbers, for k-means and for the choice of patches
@@ -112,10 +119,10 @@ pub enum StorageArg {
 pub enum NormalsArg {
     /// 8 where rounding does not show at the roughness, else 16
     Auto,
-    /// 2 bytes a texel
+    /// steps of 1/127
     #[value(name = "8")]
     Eight,
-    /// 4 bytes a texel
+    /// steps of 1/32767
     #[value(name = "16")]
     Sixteen,
 }

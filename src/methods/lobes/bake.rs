@@ -4,13 +4,14 @@ use super::args::Args;
 use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
 use crate::input::{LoadedMap, digest, load_normal_map};
-use crate::methods::method::{FinishedPack, provenance};
+use crate::methods::bake::FinishedPack;
+use crate::methods::method::provenance;
 use crate::pack;
 use crate::progress::Stages;
 use crate::quantities::kib;
 use glint_bake_core::lobes::options::LobesOptions;
 use glint_bake_core::lobes::{self, sections};
-use glint_bake_core::surface::{self, Surface};
+use glint_bake_core::surface::{self, SurfaceOptions};
 use glint_bake_core::synthesis::SynthesisOptions;
 use glint_formats::Codec;
 use glint_formats::Section;
@@ -49,8 +50,9 @@ pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Fai
         }
         Some(synthesis) => {
             options.cell_texels = args.reduction.cell.unwrap_or(SURFACE_CELL);
-            surface::bake::check(&loaded.map, &options, synthesis).map_err(|e| Failure::bake(&args.map, &e))?;
-            surface::bake::most_bytes(width, height, &options, synthesis)
+            let options = SurfaceOptions { lobes: options.clone(), synthesis: *synthesis };
+            options.check(&loaded.map).map_err(|e| Failure::bake(&args.map, &e))?;
+            options.most_bytes(width, height)
         }
     };
     delivery.check_size(bytes, SMALLER)?;
@@ -99,8 +101,8 @@ impl Args {
             self.check_error(&baked.params.measured)?;
             return Ok(sections::to_sections(name, &baked, codec));
         };
-        let baked: Surface =
-            surface::bake(map, options, synthesis, &progress).map_err(|e| Failure::bake(&self.map, &e))?;
+        let options = SurfaceOptions { lobes: options.clone(), synthesis: *synthesis };
+        let baked = surface::bake(map, &options, &progress).map_err(|e| Failure::bake(&self.map, &e))?;
         self.check_error(&baked.lobes.params.measured)?;
         self.surface.write_normal_map(&baked, map)?;
         Ok(surface::sections::to_sections(name, &baked, codec))

@@ -4,7 +4,7 @@ use crate::methods::contents::Item;
 use crate::quantities::{kib, percent};
 use glint_bake_core::lobes::{BakedLobes, sections};
 use glint_bake_core::surface::sections as surface_sections;
-use glint_bake_core::synthesis::measure::whole_share;
+use glint_bake_core::synthesis::quality::whole_share;
 use glint_formats::Pack;
 use glint_formats::Wrap;
 use glint_formats::lobes::{Filter, FootprintError, LobeStorage, Merge, NormalsStorage};
@@ -45,6 +45,10 @@ pub struct LobesInfo {
     pub lobe_bytes: u64,
     /// Bytes of the normals once decompressed.
     pub normal_bytes: u64,
+    /// Bytes that a GPU holds of this map: lobes, normals and what shaders read of the parameters. Of a surface's sample too.
+    pub gpu_bytes: u64,
+    /// Intrinsic roughness up to which renderers may leave out what lies beyond the rim of the disk of normals.
+    pub rim_roughness: f32,
     /// Roughness that the error was measured at.
     pub measured_roughness: f32,
     /// Error as the bake measured it, a row a footprint size.
@@ -95,7 +99,9 @@ impl LobesInfo {
                 NormalsStorage::Unorm8 => 8,
             },
             lobe_bytes: baked.lobes.len() as u64,
-            normal_bytes: baked.normals.len() as u64,
+            normal_bytes: size_of_val(&baked.normals[..]) as u64,
+            gpu_bytes: baked.gpu_bytes() as u64,
+            rim_roughness: params.rim_roughness,
             measured_roughness: params.measured_roughness,
             measured: params.measured.clone(),
         })
@@ -150,11 +156,12 @@ impl Item for LobesInfo {
         );
         let _ = writeln!(
             out,
-            "  storage      lobes {} {}, normals {} bits {}",
+            "  storage      lobes {} {}, normals {} bits {}, on a GPU {} together",
             self.storage,
             kib(self.lobe_bytes),
             self.normal_bits,
-            kib(self.normal_bytes)
+            kib(self.normal_bytes),
+            kib(self.gpu_bytes)
         );
         for row in &self.measured {
             let _ = writeln!(

@@ -6,8 +6,9 @@ mod info;
 mod plot;
 mod surface;
 
+use super::bake::{Bake, FinishedPack};
 use super::contents::{Field, ParameterKind};
-use super::method::{Bake, FinishedPack, Method, command, parse};
+use super::method::{Method, command, parse};
 
 use super::plots::WritePlot;
 use crate::cli::Terminal;

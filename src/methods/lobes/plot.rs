@@ -39,7 +39,7 @@ fn patches(synthesis: &Synthesis) -> Canvas {
     const STEP: f32 = 0.618_034;
     let mut canvas = Canvas::new(EDGE, EDGE, [0; 3]);
     for (x, y) in (0..EDGE).flat_map(|y| (0..EDGE).map(move |x| (x, y))) {
-        let patch = synthesis.source(x as i32, y as i32).patch;
+        let patch = synthesis.place(x as i32, y as i32).patch_index;
         canvas.set(x, y, colour_wheel((patch as f32 * STEP).fract()));
     }
     canvas

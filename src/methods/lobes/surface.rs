@@ -6,8 +6,7 @@ use crate::cli::values::{self, SurfaceSize};
 use crate::exit::Failure;
 use crate::output;
 use glint_bake_core::normal_map::NormalMap;
-use glint_bake_core::surface::Surface;
-use glint_bake_core::surface::bake::ALIGNMENT;
+use glint_bake_core::surface::{ALIGNMENT, Surface};
 use glint_bake_core::synthesis::{SynthesisOptions, Target, assemble};
 use std::path::{Path, PathBuf};
 
@@ -24,12 +23,19 @@ const ROWS: u32 = 64;
 #[command(next_help_heading = "Synthesis")]
 pub struct SurfaceFlags {
     /// Make a large surface of patches of the map: of this size in texels, or `unbounded`
+    ///
+    /// A size repeats without a seam after whole patches; an unbounded surface, of corner tiles, has no end and no
+    /// period.
     #[arg(long, value_name = "WxH", value_parser = values::surface_size)]
     pub synthesize: Option<SurfaceSize>,
     /// Edge of a patch in texels, a multiple of 16 [default: 64; unbounded 96]
+    ///
+    /// The map must be as large, and with --wrap clamp larger by the overlap rounded up to 16.
     #[arg(long, value_name = "TEXELS", requires = "synthesize")]
     pub patch: Option<u32>,
     /// Texels over which patches overlap [default: 8; unbounded 6]
+    ///
+    /// 0 to 64, and at most half a patch.
     #[arg(long, value_name = "TEXELS", requires = "synthesize")]
     pub overlap: Option<u32>,
     /// Weight of normals against Jacobians where patches are compared, 0 to 1 [default: 0.9]
@@ -37,9 +43,13 @@ pub struct SurfaceFlags {
     pub alpha: Option<f64>,
     /// Difference along a seam up to which a patch is as good as any, in units of that of neighbouring texels
     /// [default: 0.02]
+    ///
+    /// Of corner tiles it is the difference over an overlap.
     #[arg(long, value_name = "ERROR", requires = "synthesize")]
     pub error_tolerance: Option<f64>,
     /// Corner colours of an unbounded surface, 1 to 4 [default: 4]
+    ///
+    /// N colours make N⁴ kinds of tiles.
     #[arg(long, value_name = "N", requires = "synthesize")]
     pub colours: Option<u32>,
     /// Tiles for the same four colours of an unbounded surface, 1 to 16 [default: 2]
@@ -49,6 +59,8 @@ pub struct SurfaceFlags {
     #[arg(long, value_name = "PNG", requires = "synthesize")]
     pub write_normal_map: Option<PathBuf>,
     /// Size of that normal map [default: the surface's; an unbounded surface needs one]
+    ///
+    /// It begins at the surface's first texel.
     #[arg(long, value_name = "WxH", value_parser = values::size, requires = "write_normal_map")]
     pub normal_map_size: Option<(u32, u32)>,
 }

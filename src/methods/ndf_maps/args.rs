@@ -5,9 +5,9 @@ use crate::cli::{OptionList, RunFlags, values};
 use crate::delivery::Delivery;
 use crate::exit::Failure;
 use clap::ValueEnum;
-use glint_bake_core::ndf_maps::bake::{FINEST_TILE, NdfMapsOptions, ROUGHNESS_RANGE};
-use glint_bake_core::ndf_maps::placement::{PlacementOptions, StochasticOptions};
-use glint_bake_core::ndf_maps::transform::TransformRanges;
+use glint_bake_core::ndf_maps::options::{
+    FINEST_TILE, NdfMapsOptions, PlacementOptions, ROUGHNESS_RANGE, StochasticOptions, TransformRanges,
+};
 use glint_formats::ndf_maps::DensityStorage;
 use std::path::PathBuf;
 
@@ -42,12 +42,17 @@ pub struct Args {
     pub preset: Preset,
     /// Error E1 asked of tiles on average, three times that of each; given, missing it fails the bake
     /// [default: by preset]
+    ///
+    /// When it is given and the bake misses it, nothing is written and the exit code is 6.
     #[arg(long, value_name = "E1", value_parser = values::positive, help_heading = "Bake")]
     pub max_error: Option<f64>,
     /// How densities are stored; paper is 128 x 128 floats a tile [default: by preset]
     #[arg(long, value_name = "STORAGE", help_heading = "Bake")]
     pub storage: Option<Storage>,
     /// Edge in texels of the smallest tiles that are kept, a power of two; larger where no footprint is smaller
+    ///
+    /// Where every footprint is as wide as a tile of so many texels, finer ones are never read; narrower ones then
+    /// see lobes, one a texel.
     #[arg(long, value_name = "TEXELS", default_value = "2", value_parser = tile_edge, help_heading = "Bake")]
     pub min_tile: u32,
     /// Compress the pack's sections with Zstandard
@@ -63,6 +68,9 @@ pub struct Args {
     pub placement: PlacementArg,
     /// Transforms of placed copies: rotate=A..B (degrees), mirror, scale=A..B, stretch=A..B, shear=A..B, or none
     /// [default: none when tiled, rotate=0..360,mirror when stochastic]
+    ///
+    /// scale is the size on the surface, stretch the width of the normals; a single value stands for both ends. Tiled
+    /// copies share one transform, so they take single values only.
     #[arg(long, value_name = "LIST", value_parser = values::transforms, help_heading = "Placement")]
     pub transforms: Option<TransformRanges>,
     /// Different transforms of a stochastic placement, 1 to 32

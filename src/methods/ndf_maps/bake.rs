@@ -8,14 +8,16 @@ use crate::cli::normal_maps::{check_name, unique_name};
 use crate::cli::values::name_of;
 use crate::exit::{Exit, Failure};
 use crate::input::{LoadedMap, digest, load_normal_map};
-use crate::methods::method::{FinishedPack, provenance};
+use crate::methods::bake::FinishedPack;
+use crate::methods::method::provenance;
 use crate::pack::seal;
 use crate::progress::Stages;
 use crate::quantities::percent;
 use glint_bake_core::error::{BakeError, Result as BakeResult};
-use glint_bake_core::ndf_maps::bake::{self, NdfMapsOptions, WORST_OF_MEAN};
-use glint_bake_core::ndf_maps::eval::Material;
-use glint_bake_core::ndf_maps::placement::{self, PlacementOptions};
+use glint_bake_core::ndf_maps::bake as ndf_bake;
+use glint_bake_core::ndf_maps::baked::Material;
+use glint_bake_core::ndf_maps::options::{NdfMapsOptions, Options, PlacementOptions, WORST_OF_MEAN, check_size};
+use glint_bake_core::ndf_maps::placement::place;
 use glint_bake_core::ndf_maps::sections;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::{Progress, Silent};
@@ -255,9 +257,7 @@ pub fn bake_material(
     placement: &PlacementOptions,
     progress: &dyn Progress,
 ) -> BakeResult<Material> {
-    let placement = placement::bake(map, options.roughness, placement)?;
-    let maps = bake::bake(map, options, progress)?;
-    Ok(Material { maps, placement })
+    ndf_bake::bake(map, &Options { maps: options.clone(), placement: *placement }, progress)
 }
 
 /// What would stop [`bake_material`], found without the work.
@@ -267,26 +267,22 @@ fn check_material(
     placement: &PlacementOptions,
     max_memory: u64,
 ) -> BakeResult<()> {
-    if u64::from(map.width) * u64::from(map.height) > bake::MAX_EXAMPLE_TEXELS {
-        return Err(BakeError::LimitExceeded(format!(
-            "expected at most {} texels, found {} × {}; NDF maps are for small examples: use a part of it with --crop WxH+X+Y",
-            bake::MAX_EXAMPLE_TEXELS,
-            map.width,
-            map.height
-        )));
-    }
+    check_size(map).map_err(|error| match error {
+        BakeError::LimitExceeded(why) => BakeError::LimitExceeded(format!("{why} with --crop WxH+X+Y")),
+        other => other,
+    })?;
     let needed = tile_count(map.width, map.height, options.min_tile) * PAPER_TILE_BYTES;
     if options.storage == DensityStorage::PaperF32 && needed > max_memory {
         return Err(BakeError::LimitExceeded(format!(
             "the paper's layout needs {needed} bytes, the limit is {max_memory}; raise --max-memory or give --storage u8"
         )));
     }
-    placement::bake(map, options.roughness, placement).map(|_| ())
+    place(map, options.roughness, placement).map(|_| ())
 }
 
 /// Tiles of all levels of an example, from tiles of `min_tile` texels on.
 fn tile_count(width: u32, height: u32, min_tile: u32) -> u64 {
-    bake::levels_from(width, height, min_tile)
+    ndf_bake::levels(width, height, min_tile)
         .iter()
         .map(|level| u64::from(level.tiles_x) * u64::from(level.tiles_y))
         .sum()

@@ -1,7 +1,7 @@
 //! How many tiles have which error, as an SVG.
 
 use crate::plot::{Axis, Colour, Figure, Panel, Series};
-use glint_bake_core::ndf_maps::bake::BakedNdfMaps;
+use glint_bake_core::ndf_maps::baked::BakedNdfMaps;
 
 const BINS: usize = 40;
 

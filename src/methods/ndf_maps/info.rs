@@ -4,14 +4,13 @@ use super::args::Storage;
 use crate::cli::values::name_of;
 use crate::methods::contents::{Item, decode_all};
 use crate::quantities::{kib, percent};
-use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::sections;
-use glint_formats::Wrap;
 use glint_formats::ndf_maps::{
     CLASSES, DENSITY, LAYERS, LayeredMaterial, MeasuredError, NOISE, NORMALS, PALETTE, PARAMS, PLACEMENT,
     PlacementKind, TILES,
 };
-use glint_formats::{FourCc, Pack};
+use glint_formats::{FourCc, Pack, Wrap};
 use serde::Serialize;
 
 /// Bytes of one tile in the paper's layout: 128 × 128 floats.

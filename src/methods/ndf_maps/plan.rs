@@ -4,17 +4,18 @@ use super::args::{Args, Storage};
 use super::bake::draft;
 use crate::cli::values::name_of;
 use crate::exit::{Exit, Failure};
-use crate::methods::planning::{Candidates, Request, sizes};
+use crate::methods::bake::Candidates;
+use crate::methods::planning::{Request, sizes};
 use crate::quantities::kib;
 use crate::scene::Footprints;
 use glam::DVec2;
 use glint_bake_core::footprint::Footprint;
-use glint_bake_core::ndf_maps::bake::FINEST_TILE;
-use glint_bake_core::ndf_maps::eval::Material;
-use glint_bake_core::ndf_maps::measure::ExactNdf;
+use glint_bake_core::ndf_maps::baked::Material;
+use glint_bake_core::ndf_maps::eval::EvalSettings;
+use glint_bake_core::ndf_maps::options::FINEST_TILE;
+use glint_bake_core::ndf_maps::quality::ExactNdf;
 use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
 use glint_bake_core::ndf_maps::sections;
-use glint_bake_core::ndf_maps::surface::EvalSettings;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::quality::sweep::footprints;
 use glint_formats::Pack;
@@ -74,7 +75,7 @@ pub fn candidates(args: &Args, request: &Request<'_>) -> Result<Candidates, Fail
     drop(made);
     let mut found = Candidates::new(line(&footprints));
     // A preset says both, so that there is nothing to choose but the tiles.
-    let preset = request.gives("preset");
+    let preset = request.fixes("preset");
     let settings = if preset { &SETTINGS[..1] } else { &SETTINGS[..] };
     for setting in settings {
         let choice = asked(*setting, tile, !preset);

@@ -4,13 +4,13 @@ use crate::report::settings::Settings;
 use glam::{DVec2, Vec2};
 use glint_bake_core::error::Result;
 use glint_bake_core::footprint::Footprint;
-use glint_bake_core::ndf_maps::bake::{self, NdfMapsOptions};
-use glint_bake_core::ndf_maps::eval::{Material, Terms};
-use glint_bake_core::ndf_maps::measure::{FootprintErrors, footprint_errors};
-use glint_bake_core::ndf_maps::placement::{self, PlacementOptions, StochasticOptions};
+use glint_bake_core::ndf_maps::bake::bake_maps;
+use glint_bake_core::ndf_maps::baked::Material;
+use glint_bake_core::ndf_maps::eval::{EvalSettings, Terms};
+use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, StochasticOptions, TransformRanges};
+use glint_bake_core::ndf_maps::placement::place;
+use glint_bake_core::ndf_maps::quality::{FootprintErrors, footprint_errors};
 use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
-use glint_bake_core::ndf_maps::surface::EvalSettings;
-use glint_bake_core::ndf_maps::transform::TransformRanges;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::quality::sweep::{ANISOTROPIES, FOOTPRINTS, SIGMAS_TEXELS, footprints as sweep_footprints};
@@ -73,7 +73,7 @@ const DIAL: [EvalSettings; 4] = [
 
 /// Measures an example with `count` footprints a size.
 pub fn example(map: &NormalMap, count: u32, scale: &Settings) -> Result<Example> {
-    let maps = bake::bake(map, &NdfMapsOptions::default(), &Silent)?;
+    let maps = bake_maps(map, &NdfMapsOptions::default(), &Silent)?;
     let one = |degrees: f64| TransformRanges { rotate_degrees: (degrees, degrees), ..TransformRanges::default() };
     let placements = [
         ("tiled", PlacementOptions::Tiled(one(20.0))),
@@ -82,7 +82,7 @@ pub fn example(map: &NormalMap, count: u32, scale: &Settings) -> Result<Example>
     let mut sizes = Vec::new();
     let mut dial = Vec::new();
     for (name, options) in placements {
-        let placement = placement::bake(map, maps.params.intrinsic_roughness as f64, &options)?;
+        let placement = place(map, maps.params.intrinsic_roughness as f64, &options)?;
         let material = Material { maps: maps.clone(), placement };
         let reference = SurfaceReference::new(map, &material);
         for anisotropy in ANISOTROPIES {
@@ -175,11 +175,11 @@ fn settings(map: &NormalMap, scale: &Settings) -> Result<Vec<Setting>> {
         for (storage, max_error) in own.into_iter().chain(others) {
             let options = NdfMapsOptions { roughness, max_error, storage, ..NdfMapsOptions::default() };
             let begin = Instant::now();
-            let baked = bake::bake(map, &options, &Silent)?;
+            let baked = bake_maps(map, &options, &Silent)?;
             all.push(Setting {
                 roughness,
                 label: label(storage, max_error),
-                bytes: baked.gpu_bytes(),
+                bytes: baked.compact_bytes(),
                 milliseconds: begin.elapsed().as_secs_f64() * 1e3,
                 error: baked.params.measured,
                 on_front: false,

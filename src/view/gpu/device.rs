@@ -56,9 +56,7 @@ pub struct Gpu {
 }
 
 /// Features that are used where an adapter has them; everything works without.
-const OPTIONAL: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
-    .union(wgpu::Features::FLOAT32_FILTERABLE)
-    .union(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM);
+const OPTIONAL: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY;
 
 impl Gpu {
     /// The device of the wished adapter, without a window.

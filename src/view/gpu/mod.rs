@@ -8,4 +8,4 @@ mod sections;
 pub use compute::{answer, read_back};
 pub use device::{Gpu, GpuError, Wish};
 pub use resources::{BoundSection, GpuTexture, ResourceSet, Resources, TABLE_WIDTH};
-pub use sections::{bind_pack, bind_sections};
+pub use sections::{bind_pack, bind_sections, collect_pack, collect_sections};

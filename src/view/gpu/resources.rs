@@ -78,7 +78,7 @@ impl ResourceSet {
         // Bindings have a multiple of four bytes, and at least one vector of a storage array.
         let mut padded = contents.to_vec();
         padded.resize(contents.len().next_multiple_of(16).max(16), 0);
-        self.bytes += padded.len() as u64;
+        self.bytes += contents.len() as u64;
         let buffer = gpu.buffer(usage | wgpu::BufferUsages::COPY_SRC, &padded);
         self.sections.extend(self.next.take().map(|kind| (kind, BoundSection::Buffer(buffer.clone()))));
         self.push(

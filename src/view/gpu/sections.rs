@@ -15,12 +15,7 @@ type Content<'a> = (Resource, Cow<'a, [u8]>);
 /// # Errors
 /// [`GpuError::BadPack`] for a section that is damaged, or larger than the device binds.
 pub fn bind_pack(gpu: &Gpu, pack: &Pack, name: &str, bindings: &[Binding], wrap: Wrap) -> Result<Resources, GpuError> {
-    let content = |kind: FourCc| {
-        let Some(entry) = pack.find(kind, name) else { return Ok(None) };
-        let payload = pack.payload(entry).map_err(|issue| GpuError::BadPack(issue.to_string()))?;
-        Ok(Some((entry.resource, payload)))
-    };
-    bind(gpu, &content, bindings, wrap)
+    Ok(collect_pack(gpu, pack, name, bindings, wrap)?.finish(gpu))
 }
 
 /// Binds sections that are not in a pack yet; one of each kind. See [`bind_pack`].
@@ -28,20 +23,52 @@ pub fn bind_pack(gpu: &Gpu, pack: &Pack, name: &str, bindings: &[Binding], wrap:
 /// # Errors
 /// [`GpuError::BadPack`] for a section that is larger than the device binds.
 pub fn bind_sections(gpu: &Gpu, sections: &[Section], bindings: &[Binding], wrap: Wrap) -> Result<Resources, GpuError> {
+    Ok(collect_sections(gpu, sections, bindings, wrap)?.finish(gpu))
+}
+
+/// What [`bind_pack`] binds, for a host to add bindings of its own after.
+///
+/// # Errors
+/// Those of [`bind_pack`].
+pub fn collect_pack(
+    gpu: &Gpu,
+    pack: &Pack,
+    name: &str,
+    bindings: &[Binding],
+    wrap: Wrap,
+) -> Result<ResourceSet, GpuError> {
+    let content = |kind: FourCc| {
+        let Some(entry) = pack.find(kind, name) else { return Ok(None) };
+        let payload = pack.payload(entry).map_err(|issue| GpuError::BadPack(issue.to_string()))?;
+        Ok(Some((entry.resource, payload)))
+    };
+    collect(gpu, &content, bindings, wrap)
+}
+
+/// What [`bind_sections`] binds, for a host to add bindings of its own after.
+///
+/// # Errors
+/// Those of [`bind_sections`].
+pub fn collect_sections(
+    gpu: &Gpu,
+    sections: &[Section],
+    bindings: &[Binding],
+    wrap: Wrap,
+) -> Result<ResourceSet, GpuError> {
     let content = |kind: FourCc| {
         let section = sections.iter().find(|section| section.kind == kind);
         Ok(section.map(|section| (section.resource, Cow::Borrowed(&section.payload[..]))))
     };
-    bind(gpu, &content, bindings, wrap)
+    collect(gpu, &content, bindings, wrap)
 }
 
-/// The sections that `bindings` name, by `content`, as a bind group.
-fn bind<'a>(
+/// The sections that `bindings` name, by `content`.
+fn collect<'a>(
     gpu: &Gpu,
     content: &dyn Fn(FourCc) -> Result<Option<Content<'a>>, GpuError>,
     bindings: &[Binding],
     wrap: Wrap,
-) -> Result<Resources, GpuError> {
+) -> Result<ResourceSet, GpuError> {
     let mut set = ResourceSet::default();
     for binding in bindings {
         match *binding {
@@ -70,19 +97,22 @@ fn bind<'a>(
             Binding::ClampSampler => set.sampler(gpu, wgpu::AddressMode::ClampToEdge),
         };
     }
-    Ok(set.finish(gpu))
+    Ok(set)
 }
 
 fn sample_type(view: View) -> wgpu::TextureSampleType {
     match view {
         View::Uint2d => wgpu::TextureSampleType::Uint,
-        View::Float2d | View::FloatCube | View::FloatCubeArray => wgpu::TextureSampleType::Float { filterable: true },
+        View::Float2d | View::Float2dArray | View::FloatCube | View::FloatCubeArray => {
+            wgpu::TextureSampleType::Float { filterable: true }
+        }
     }
 }
 
 fn dimension(view: View) -> TextureViewDimension {
     match view {
         View::Float2d | View::Uint2d => TextureViewDimension::D2,
+        View::Float2dArray => TextureViewDimension::D2Array,
         View::FloatCube => TextureViewDimension::Cube,
         View::FloatCubeArray => TextureViewDimension::CubeArray,
     }
@@ -93,7 +123,7 @@ fn absent(view: View) -> (GpuTexture, Vec<u8>) {
     let (format, bytes, layers) = match view {
         View::Uint2d => (TextureFormat::R32Uint, 4, 1),
         View::Float2d => (TextureFormat::Rgba8Unorm, 4, 1),
-        View::FloatCube | View::FloatCubeArray => (TextureFormat::Rgba8Unorm, 4, 6),
+        View::Float2dArray | View::FloatCube | View::FloatCubeArray => (TextureFormat::Rgba8Unorm, 4, 6),
     };
     let texture = GpuTexture { format, size: [1; 2], layers, mips: 1, dimension: dimension(view) };
     (texture, vec![0; bytes * layers as usize])

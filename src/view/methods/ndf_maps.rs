@@ -5,7 +5,7 @@ mod reach;
 
 use crate::gpu::{Gpu, GpuError, ResourceSet, Resources, TABLE_WIDTH};
 use bytemuck::{Pod, Zeroable};
-use glint_bake_core::ndf_maps::eval::Material;
+use glint_bake_core::ndf_maps::baked::Material;
 use glint_formats::Wrap;
 use glint_formats::ndf_maps::{DensityStorage, NoiseTexel, PlacementKind};
 
@@ -119,7 +119,7 @@ impl Tables {
             reach_words: self.word(bytemuck::cast_slice(&reach::mask(material))),
             blocks: u32::from(blocks.is_some()),
             few_tiles: 0,
-            most_texels: material.most_example_texels(),
+            most_texels: material.most_texels(),
         }
     }
 }

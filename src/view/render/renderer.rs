@@ -124,7 +124,7 @@ impl Renderer {
         });
         Ok(Renderer {
             mesh: mesh_buffers(gpu, mesh),
-            environment: Rc::new(environment::empty(gpu)),
+            environment: Rc::new(environment::empty(gpu)?),
             nothing: ResourceSet::default().finish(gpu),
             scene_layout,
             pipelines: Pipelines::default(),

@@ -242,30 +242,15 @@ impl SceneUniform {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::mem::offset_of;
-
-    /// Offsets of a struct's members and its size, as WGSL has them.
-    fn layout(name: &str) -> (Vec<(String, u32)>, u32) {
-        let module = naga::front::wgsl::parse_str(&glint_shaders::compose(&["view_scene"])).unwrap();
-        let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
-        let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no struct") };
-        (members.iter().map(|m| (m.name.clone().unwrap(), m.offset)).collect(), *span)
-    }
-
-    macro_rules! same_layout {
-        ($rust:ty, $wgsl:literal, $($field:ident),*) => {
-            let (members, size) = layout($wgsl);
-            let offsets = [$((stringify!($field).to_owned(), offset_of!($rust, $field) as u32)),*];
-            assert_eq!(members, offsets);
-            assert_eq!(size as usize, size_of::<$rust>());
-        };
-    }
+    use glint_shaders::assert_same_layout;
 
     #[test]
     fn uniforms_lie_as_the_shader_reads_them() {
-        same_layout!(
-            SceneUniform,
+        let source = glint_shaders::compose(&["view_scene"]);
+        assert_same_layout!(
+            &source,
             "ViewScene",
+            SceneUniform,
             clip_from_world,
             camera,
             frame,
@@ -282,9 +267,10 @@ mod tests {
             half_size,
             world_from_camera
         );
-        same_layout!(
-            Material,
+        assert_same_layout!(
+            &source,
             "ViewMaterial",
+            Material,
             f0,
             intrinsic_roughness,
             alpha,

@@ -1,12 +1,13 @@
-// Bindings of an environment for glint_environment.wgsl: group 2, read by a sampler.
+// Bindings of an environment for environment::eval: group 2, read by a sampler.
 
 #import environment::eval
 #import bind_loads
 
+// Section ENUB.
 @group(2) @binding(0) var<uniform> environment: GlintEnvironment;
-// Section ENRA: RGBA16Float or RGBA32Float, all mips.
+// Section ENRA: RGBA16Float, all mips.
 @group(2) @binding(1) var environment_radiance: texture_cube<f32>;
-// Section ENIN: RGBA16Float, RGBA32Float or RGBA16Unorm, four levels a layer; one black texel if there is one level.
+// Section ENIN: RGBA16Float, four levels a layer; one black texel if there is one level.
 @group(2) @binding(2) var environment_indicators: texture_cube_array<f32>;
 // Section ENCO: RGB9E5Ufloat, a level a layer; one black texel without colours.
 @group(2) @binding(3) var environment_colours: texture_cube_array<f32>;

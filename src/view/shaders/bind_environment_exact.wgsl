@@ -1,4 +1,4 @@
-// Bindings of an environment for glint_environment.wgsl: group 2, read texel by texel.
+// Bindings of an environment for environment::eval: group 2, read texel by texel.
 //
 // What bind_environment.wgsl does by a sampler, in f32: samplers may round weights to 8 bits and differ at the corners of
 // a cube. Twin of glint-bake-core environment/lookup.rs; for tests and for devices whose samplers do not serve.
@@ -6,7 +6,7 @@
 #import environment::eval
 
 @group(2) @binding(0) var<uniform> environment: GlintEnvironment;
-// Faces of the cubes as layers.
+// The same sections; faces of the cubes are layers.
 @group(2) @binding(1) var environment_radiance: texture_2d_array<f32>;
 @group(2) @binding(2) var environment_indicators: texture_2d_array<f32>;
 @group(2) @binding(3) var environment_colours: texture_2d_array<f32>;

@@ -1,5 +1,4 @@
-// Bindings of lobes, and of the surface synthesised from their map if there is one: group 1. One layout for both, for
-// glint_lobes.wgsl, glint_synthesis.wgsl and glint_surface.wgsl.
+// Bindings of lobes, and of the surface synthesised from their map if there is one: group 1. One layout for both.
 
 #import lobes::query
 #import synthesis::paths

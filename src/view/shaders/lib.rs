@@ -11,6 +11,7 @@
 //! A file names those that it calls in lines `#import <method>::<file>`.
 //! Order of declarations does not matter in WGSL, so a program is its files one after the other ([`compose`]).
 
+pub mod layout;
 pub mod operations;
 pub mod translate;
 

@@ -1,7 +1,7 @@
 // Answers queries of the P-NDF of a synthesised surface, one an invocation.
 
 #import bind_lobes
-#import surface::query
+#import surface::eval
 
 struct SurfaceQuery {
     mean: vec2f,

@@ -1,6 +1,6 @@
 // A surface that repeats a normal map, by the map's lobes. material.intrinsic_roughness is the width of a facet's lobe,
 // material.texels_per_unit the map's scale, material.pixel_sigma the pixel's filter. The program
-// takes in glint_lobes_packed.wgsl or glint_lobes_half.wgsl as well, as the pack stores lobes.
+// takes in lobes::packed or lobes::half as well, as the pack stores lobes.
 
 #import shade_normals
 #import bind_lobes

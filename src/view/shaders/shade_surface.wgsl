@@ -1,10 +1,10 @@
 // A surface synthesised by patches of a normal map, by the lobes of the map. Uses the material as shade_lobes.wgsl. The
-// program takes in glint_lobes_packed.wgsl or glint_lobes_half.wgsl, glint_synthesis_grid.wgsl or glint_synthesis_tiles.wgsl, and
-// glint_surface_blocks.wgsl (or glint_surface_seams.wgsl, at many times the cost near seams) as well.
+// program takes in lobes::packed or lobes::half, synthesis::grid or synthesis::tiles, and surface::blocks (or surface::seams, at
+// many times the cost near seams) as well.
 
 #import shade_normals
 #import bind_lobes
-#import surface::query
+#import surface::eval
 
 // Whether mass beyond the rim is given back, see glint_lobes_rim.
 override LOBES_RIM: bool = true;
@@ -14,7 +14,7 @@ fn shade_surface_query(point: ViewPoint, s: vec2f) -> GlintSurfaceQuery {
     let footprint =
         glint_footprint_of_pixel(point.uv * texels, point.d_dx * texels, point.d_dy * texels, material.pixel_sigma);
     return glint_surface_query(
-        lobes.map, lobes.synthesis, footprint, s, material.intrinsic_roughness, glint_surface_realtime_settings(),
+        lobes.map, lobes.synthesis, footprint, s, material.intrinsic_roughness, glint_surface_realtime(),
     );
 }
 

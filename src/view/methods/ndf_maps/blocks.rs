@@ -1,7 +1,7 @@
 //! Density texels where a spline finds all that it needs in one load: three by three of them in every place, those beyond the
 //! tile as zeros. Sixteen times the bytes of the pack, which tiny examples can afford; larger ones stay as they are.
 
-use glint_bake_core::ndf_maps::bake::BakedNdfMaps;
+use glint_bake_core::ndf_maps::baked::BakedNdfMaps;
 use glint_formats::ndf_maps::{DensityStorage, TileRecord};
 
 /// Blocks of a material, at most: 32 MiB of them.

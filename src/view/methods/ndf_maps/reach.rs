@@ -4,8 +4,8 @@
 //! would round to zero count as zero. Conservative: a cell is set if any of its points may be reached.
 
 use glam::{Mat2, Vec2};
-use glint_bake_core::ndf_maps::bake::BakedNdfMaps;
-use glint_bake_core::ndf_maps::eval::{Material, matrix};
+use glint_bake_core::ndf_maps::baked::{BakedNdfMaps, Material};
+use glint_bake_core::ndf_maps::eval::matrix;
 use glint_formats::ndf_maps::{DensityStorage, TileRecord};
 use half::f16;
 

@@ -10,9 +10,12 @@ use glint_bake_core::lobes::sections::to_sections;
 use glint_bake_core::lobes::{BakedLobes, LobesOptions, bake};
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
-use glint_formats::lobes::{BINDINGS, Filter, LobeStorage};
+use glint_formats::lobes::{
+    BINDINGS, Filter, LOBES, LevelUniform, LobeStorage, LobesUniform, MapUniform, NORMALS, UNIFORM,
+};
 use glint_formats::{Codec, Wrap};
-use glint_view::gpu::{Gpu, Resources, answer, bind_sections};
+use glint_shaders::assert_same_layout;
+use glint_view::gpu::{BoundSection, Gpu, Resources, answer, bind_sections};
 use glint_view::methods::lobes::modules;
 use rand::{Rng, RngExt};
 
@@ -20,7 +23,7 @@ use rand::{Rng, RngExt};
 /// and eight queries together.
 pub const MOST_LOBES: usize = 800;
 
-/// `GlintLobesSettings` of glint_lobes.wgsl.
+/// `GlintLobesSettings` of lobes/query.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Settings {
@@ -170,6 +173,60 @@ fn answers(gpu: &Gpu, lobes: &BakedLobes, rng: &mut impl Rng, count: usize) -> V
     let found: Vec<f32> = answer(gpu, "lobes", &source, &[&bound(gpu, lobes)], &queries).unwrap();
     let unit = |i: usize| unit(params.normal_extent, queries[i].place.roughness);
     found.iter().zip(&expected).enumerate().map(|(i, (a, e))| (a * unit(i), e * unit(i))).collect()
+}
+
+#[test]
+fn the_uniform_lies_as_the_shader_reads_it() {
+    let source = glint_shaders::compose(&["bind_lobes", "lobes::packed", "synthesis::grid"]);
+    assert_same_layout!(&source, "LobesUniform", LobesUniform, map, synthesis, levels);
+    assert_same_layout!(
+        &source,
+        "GlintLobesMap",
+        MapUniform,
+        width,
+        height,
+        wrap,
+        nearest,
+        normals,
+        lobes_per_cell,
+        step_texels,
+        levels,
+        normal_low,
+        normal_extent,
+    );
+    assert_same_layout!(
+        &source,
+        "GlintLobesLevel",
+        LevelUniform,
+        cell_texels,
+        cells_x,
+        cells_y,
+        first_lobe,
+        weight_scale,
+        jacobian_scale,
+        position_sigma,
+        position_log_ratio,
+        residual_sigma,
+        residual_log_ratio,
+        extent,
+    );
+}
+
+#[test]
+fn what_is_bound_is_what_the_sections_hold() {
+    let Some(gpu) = gpu() else { return };
+    let options = LobesOptions { footprints: 0, ..LobesOptions::default() };
+    let lobes = bake(&waves(21, 15, Wrap::Clamp), &options, &Silent).unwrap();
+    let sections = to_sections("", &lobes, Codec::None);
+    let data = bind_sections(gpu, &sections, BINDINGS, Wrap::Clamp).unwrap();
+    assert_eq!(data.bytes, lobes.gpu_bytes() as u64);
+    let kinds: Vec<_> = data.sections.iter().map(|(kind, _)| *kind).collect();
+    assert_eq!(kinds, [UNIFORM, LOBES, NORMALS]);
+    for (kind, bound) in &data.sections {
+        let BoundSection::Buffer(buffer) = bound else { panic!("{kind} is no buffer") };
+        let section = sections.iter().find(|section| section.kind == *kind).unwrap();
+        assert_eq!(buffer.size(), section.payload.len() as u64, "{kind}");
+    }
 }
 
 #[test]

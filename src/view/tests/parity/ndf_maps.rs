@@ -4,12 +4,12 @@ use crate::support::{QUERIES, compare, gpu, random, real_map};
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat2, DVec2, Vec2};
 use glint_bake_core::footprint::Footprint;
-use glint_bake_core::ndf_maps::bake::{self, NdfMapsOptions};
-use glint_bake_core::ndf_maps::eval::{LobeTerm, Material, matrix};
-use glint_bake_core::ndf_maps::placement::{self, PlacementOptions, StochasticOptions};
+use glint_bake_core::ndf_maps::bake::bake_maps;
+use glint_bake_core::ndf_maps::baked::Material;
+use glint_bake_core::ndf_maps::eval::{EvalSettings, LobeTerm, matrix};
+use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, StochasticOptions, TransformRanges};
+use glint_bake_core::ndf_maps::placement::place;
 use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
-use glint_bake_core::ndf_maps::surface::EvalSettings;
-use glint_bake_core::ndf_maps::transform::TransformRanges;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_formats::Wrap;
@@ -93,8 +93,8 @@ struct Sample {
 
 impl Sample {
     fn new(map: NormalMap, maps: NdfMapsOptions, placement: PlacementOptions) -> Sample {
-        let placement = placement::bake(&map, maps.roughness, &placement).unwrap();
-        let material = Material { maps: bake::bake(&map, &maps, &Silent).unwrap(), placement };
+        let placement = place(&map, maps.roughness, &placement).unwrap();
+        let material = Material { maps: bake_maps(&map, &maps, &Silent).unwrap(), placement };
         Sample { map, material }
     }
 
@@ -264,7 +264,7 @@ fn one_place_is_what_the_definition_shows_there() {
             let to_local = matrix(entry.normal_to_local);
             let lobe = LobeTerm::new(normal, 0.0, sample.roughness(), to_local, 1.0, Vec2::ZERO);
             let unit = std::f32::consts::TAU * sample.roughness().powi(2);
-            densities.push((answer.at_point * unit, lobe.density(query.s) * unit));
+            densities.push((answer.at_point * unit, lobe.lobe_density(query.s) * unit));
         }
     }
     compare("NDF maps, one place", densities.into_iter());

@@ -8,7 +8,7 @@ use glint_bake_core::lobes::options::NormalsChoice;
 use glint_bake_core::lobes::query::QuerySettings;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::surface::sections::to_sections;
-use glint_bake_core::surface::{Surface, SurfaceSettings, bake};
+use glint_bake_core::surface::{Surface, SurfaceOptions, SurfaceSettings, bake};
 use glint_bake_core::synthesis::{SynthesisOptions, Target};
 use glint_formats::lobes::{BINDINGS, Filter, LobeStorage};
 use glint_formats::{Codec, Wrap};
@@ -33,11 +33,11 @@ fn surface_settings(rng: &mut impl Rng, whole_blocks: bool) -> SurfaceSettings {
     let query = settings(rng);
     let query = QuerySettings { max_cells: 0.5 * query.max_cells, max_boxes: 0.5 * query.max_boxes, ..query };
     if rng.random_range(0..4) == 0 {
-        return SurfaceSettings { query, whole_blocks, ..SurfaceSettings::default() };
+        return SurfaceSettings { lobes: query, whole_blocks, ..SurfaceSettings::default() };
     }
     SurfaceSettings {
-        query,
-        owned_from: [8, 16, 32, 64][rng.random_range(0..4)],
+        lobes: query,
+        owned_from: [8.0, 16.0, 32.0, 64.0][rng.random_range(0..4)],
         owned_sigma: log_uniform(rng, 2.0, 30.0),
         box_range: log_uniform(rng, 0.3, 4.0),
         halves_until: log_uniform(rng, 1.0, 20.0),
@@ -58,7 +58,7 @@ fn answers(gpu: &Gpu, surface: &Surface, rng: &mut impl Rng, whole_blocks: bool,
         drawn += 1;
         let place = place(rng, 3000.0, shown);
         let settings = surface_settings(rng, whole_blocks);
-        let SurfaceSettings { query, owned_from, owned_sigma, box_range, halves_until, .. } = settings;
+        let SurfaceSettings { lobes, owned_from, owned_sigma, box_range, halves_until, .. } = settings;
         let gathered = surface.gather(&place.footprint(), place.roughness, &settings);
         if gathered.lobes.len() > MOST_LOBES {
             continue;
@@ -66,8 +66,8 @@ fn answers(gpu: &Gpu, surface: &Surface, rng: &mut impl Rng, whole_blocks: bool,
         expected.push(gathered.density(place.s));
         queries.push(Query {
             place,
-            lobes: Settings::of(&query),
-            owned_from: owned_from as f32,
+            lobes: Settings::of(&lobes),
+            owned_from,
             owned_sigma,
             box_range,
             halves_until,
@@ -102,8 +102,8 @@ fn the_density_of_the_shader_is_that_of_the_cpu() {
     for ((target, patch, overlap), wrap, filter, storage, normals) in cases {
         let lobes =
             LobesOptions { filter, storage, normals, lobes_per_cell: 8, footprints: 0, ..LobesOptions::default() };
-        let options = SynthesisOptions { target, patch, overlap, alignment: 16, ..SynthesisOptions::default() };
-        let surface = bake(&waves(112, 128, wrap), &lobes, &options, &Silent).unwrap();
+        let synthesis = SynthesisOptions { target, patch, overlap, alignment: 16, ..SynthesisOptions::default() };
+        let surface = bake(&waves(112, 128, wrap), &SurfaceOptions { lobes, synthesis }, &Silent).unwrap();
         for whole_blocks in [false, true] {
             pairs.extend(answers(gpu, &surface, rng, whole_blocks, QUERIES / 8));
         }

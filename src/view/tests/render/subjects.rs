@@ -6,9 +6,9 @@ use glint_bake_core::dictionary::{self, DictionaryOptions, quality};
 use glint_bake_core::environment::image::{EnvironmentImage, direction as direction_at};
 use glint_bake_core::environment::{self, EnvironmentOptions};
 use glint_bake_core::lobes::{self, LobesOptions};
-use glint_bake_core::ndf_maps::bake::NdfMapsOptions;
-use glint_bake_core::ndf_maps::placement::{self, PlacementOptions, StochasticOptions};
-use glint_bake_core::ndf_maps::{self, eval};
+use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, StochasticOptions};
+use glint_bake_core::ndf_maps::placement::place;
+use glint_bake_core::ndf_maps::{self, baked};
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::surface;
@@ -32,7 +32,7 @@ fn pack(sections: Vec<Section>) -> Pack {
 
 fn dictionary_pack() -> Pack {
     let options = DictionaryOptions::default();
-    let baked = dictionary::bake(&options).unwrap();
+    let baked = dictionary::bake(&options, &Silent).unwrap();
     pack(dictionary::sections::to_sections("glitter", &baked, quality::measure(&baked), Codec::None))
 }
 
@@ -53,9 +53,9 @@ fn ndf_maps_pack() -> Pack {
     let stochastic = StochasticOptions { palette: 8, cells: 8, ..StochasticOptions::default() };
     let placements = [PlacementOptions::Tiled(Default::default()), PlacementOptions::Stochastic(stochastic)];
     let sections = ["tiled", "stochastic"].into_iter().zip(placements).flat_map(|(name, placement)| {
-        let placement = placement::bake(&map, options.roughness, &placement).unwrap();
-        let maps = ndf_maps::bake::bake(&map, &options, &Silent).unwrap();
-        ndf_maps::sections::to_sections(name, &eval::Material { maps, placement }, Codec::None)
+        let placement = place(&map, options.roughness, &placement).unwrap();
+        let maps = ndf_maps::bake::bake_maps(&map, &options, &Silent).unwrap();
+        ndf_maps::sections::to_sections(name, &baked::Material { maps, placement }, Codec::None)
     });
     pack(sections.collect())
 }
@@ -66,13 +66,14 @@ fn lobes_pack() -> Pack {
 }
 
 fn surface_pack() -> Pack {
-    let options = SynthesisOptions {
+    let synthesis = SynthesisOptions {
         target: Target::Patches { width: 256, height: 256 },
         patch: 32,
         overlap: 4,
         ..Default::default()
     };
-    let baked = surface::bake(&map(112, 128), &LobesOptions::default(), &options, &Silent).unwrap();
+    let options = surface::SurfaceOptions { lobes: LobesOptions::default(), synthesis };
+    let baked = surface::bake(&map(112, 128), &options, &Silent).unwrap();
     pack(surface::sections::to_sections("patches", &baked, Codec::None))
 }
 
@@ -96,7 +97,7 @@ fn environment_pack() -> Pack {
 
 fn area_light_pack() -> Pack {
     let options = AreaLightOptions { anisotropic: true, ..AreaLightOptions::default() };
-    let baked = area_light::bake(&map(64, 64), &options, 1 << 30, &Silent).unwrap();
+    let baked = area_light::bake(&map(64, 64), &options, &Silent).unwrap();
     pack(area_light::sections::to_sections("waves", &baked, Codec::None))
 }
 

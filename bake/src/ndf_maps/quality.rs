@@ -1,13 +1,14 @@
 //! Error of packed NDF maps against the f64 reference: tile by tile, and footprint by footprint on a covered surface.
 
-use super::bake::{self, BakedNdfMaps};
-use super::eval::{Material, Terms};
+use super::bake;
+use super::baked::{BakedNdfMaps, Material};
+use super::eval::{EvalSettings, Terms, TileTerm, matrix};
 use super::reference::ReferenceNdf;
 use super::reference_surface::SurfaceReference;
-use super::surface::EvalSettings;
 use crate::footprint::Footprint;
 use crate::normal_map::NormalMap;
 use crate::quality::metrics::{DiskGrid, Summary, e1};
+use glam::Vec2;
 use rayon::prelude::*;
 
 /// Points of the measuring grid a standard deviation of the intrinsic lobe.
@@ -24,7 +25,7 @@ pub struct NdfError {
 
 impl NdfError {
     /// Error of `density` against `exact`.
-    pub fn of(exact: &ReferenceNdf, density: impl Fn(glam::Vec2) -> f32) -> NdfError {
+    pub fn of(exact: &ReferenceNdf, density: impl Fn(Vec2) -> f32) -> NdfError {
         ExactNdf::new(exact).error(density)
     }
 }
@@ -44,7 +45,7 @@ impl ExactNdf {
     }
 
     /// Error of `density` against it.
-    pub fn error(&self, density: impl Fn(glam::Vec2) -> f32) -> NdfError {
+    pub fn error(&self, density: impl Fn(Vec2) -> f32) -> NdfError {
         let decoded = self.grid.evaluate(|s| density(s.as_vec2()) as f64);
         NdfError { e1: e1(&decoded, &self.values), energy: (self.grid.integral(&decoded) - 1.0).abs() }
     }
@@ -111,8 +112,14 @@ fn texels_read(material: &Material, terms: &Terms, exact: &ReferenceNdf) -> f64 
     for j in 0..grid.height {
         for i in 0..grid.width {
             let s = grid.point(i, j).as_vec2();
-            read += 9 * terms.tiles.iter().filter(|term| material.reads(term, s)).count();
+            read += 9 * terms.tiles.iter().filter(|term| reads(material, term, s)).count();
         }
     }
     read as f64 / (grid.width * grid.height) as f64
+}
+
+/// Whether the query `s` lies in the box of a term's tile, so that texels are read for it.
+fn reads(material: &Material, term: &TileTerm, s: Vec2) -> bool {
+    let to_local = matrix(material.placement.palette[term.class as usize].normal_to_local);
+    material.maps.tiles[term.tile as usize].holds(to_local * s)
 }

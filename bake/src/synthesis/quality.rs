@@ -1,9 +1,11 @@
 //! What a synthesised surface is like: its seams, its whole blocks, its repetitions.
 
-use super::Synthesis;
-use super::eval::Source;
+use super::baked::Synthesis;
 use crate::normal_map::NormalMap;
 use glint_formats::synthesis::{Layout, MeasuredError};
+
+/// Sample texel (column, row).
+type Texel = (u32, u32);
 
 /// Most patches whose seams are looked at.
 const MAX_MEASURED: u32 = 256;
@@ -48,8 +50,8 @@ pub fn feature_ends(surface: &Synthesis, sample: &NormalMap) -> f64 {
             return;
         }
         let (dx, dy) = if axis == 0 { (1, 0) } else { (0, 1) };
-        let beyond = sample.texel(i64::from(here.x) + dx, i64::from(here.y) + dy);
-        let before = sample.texel(i64::from(there.x) - dx, i64::from(there.y) - dy);
+        let beyond = sample.texel(i64::from(here.0) + dx, i64::from(here.1) + dy);
+        let before = sample.texel(i64::from(there.0) - dx, i64::from(there.1) - dy);
         let on = (beyond - normal(sample, there)).length_squared();
         let back = (before - normal(sample, here)).length_squared();
         ends += u64::from(on.min(back) > END * inside[axis]);
@@ -60,14 +62,14 @@ pub fn feature_ends(surface: &Synthesis, sample: &NormalMap) -> f64 {
 
 /// Visits neighbours across the seams of at most [`MAX_MEASURED`] patches: the axis along which they lie (0 right, 1 below),
 /// and where in the sample both are from.
-fn across_seams(surface: &Synthesis, mut visit: impl FnMut(usize, Source, Source)) {
+fn across_seams(surface: &Synthesis, mut visit: impl FnMut(usize, Texel, Texel)) {
     let edge = surface.params.patch as i32;
     for (column, row) in spread(surface) {
         for y in row * edge..(row + 1) * edge {
             for x in column * edge..(column + 1) * edge {
-                let here = surface.source(x, y);
+                let here = surface.source_texel(x, y);
                 for (axis, (dx, dy)) in [(1, 0), (0, 1)].into_iter().enumerate() {
-                    let there = surface.source(x + dx, y + dy);
+                    let there = surface.source_texel(x + dx, y + dy);
                     if !adjacent(surface, here, there, (dx as u32, dy as u32)) {
                         visit(axis, here, there);
                     }
@@ -87,13 +89,13 @@ fn spread(surface: &Synthesis) -> Vec<(i32, i32)> {
     (0..columns * rows).step_by(step as usize).map(|at| ((at % columns) as i32, (at / columns) as i32)).collect()
 }
 
-fn normal(sample: &NormalMap, at: Source) -> glam::DVec2 {
-    sample.texel(i64::from(at.x), i64::from(at.y))
+fn normal(sample: &NormalMap, at: Texel) -> glam::DVec2 {
+    sample.texel(i64::from(at.0), i64::from(at.1))
 }
 
-fn adjacent(surface: &Synthesis, a: Source, b: Source, (dx, dy): (u32, u32)) -> bool {
+fn adjacent(surface: &Synthesis, a: Texel, b: Texel, (dx, dy): (u32, u32)) -> bool {
     let params = &surface.params;
-    (a.x + dx) % params.sample_width == b.x && (a.y + dy) % params.sample_height == b.y
+    (a.0 + dx) % params.sample_width == b.0 && (a.1 + dy) % params.sample_height == b.1
 }
 
 /// Mean squared difference of the projected normals of neighbours inside a map, along rows and along columns.
@@ -111,16 +113,16 @@ pub fn neighbour_mean_square(sample: &NormalMap) -> [f64; 2] {
     })
 }
 
-/// Share of the blocks of 8 · 2^log2_size texels, over the first `blocks`² of them, that show one block of the sample.
+/// Edge of the finest blocks that are looked at, in texels.
+const FINEST_BLOCK: i32 = 8;
+
+/// Share of the blocks of 8 · 2^log2_size texels, over the first `blocks`² of them, that show one block of the sample: one that
+/// begins at a multiple of its edge where `exact`, else at one of the alignment.
 pub fn whole_share(surface: &Synthesis, blocks: i32, log2_size: u32, exact: bool) -> f64 {
-    let size = super::eval::FINEST_BLOCK << log2_size;
-    let step = surface.params.alignment;
-    let whole = |bx: i32, by: i32| match exact {
-        true => surface.source_block(bx, by, log2_size).is_some(),
-        false => surface.block_source(bx * size, by * size, size, step).is_some(),
-    };
-    let found =
-        (0..blocks).flat_map(|by| (0..blocks).map(move |bx| (bx, by))).filter(|&(bx, by)| whole(bx, by)).count();
+    let size = FINEST_BLOCK << log2_size;
+    let step = if exact { size as u32 } else { surface.params.alignment };
+    let whole = |&(bx, by): &(i32, i32)| surface.block_source(bx * size, by * size, size, step).is_some();
+    let found = (0..blocks).flat_map(|by| (0..blocks).map(move |bx| (bx, by))).filter(whole).count();
     found as f64 / f64::from(blocks).powi(2)
 }
 
