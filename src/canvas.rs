@@ -69,8 +69,3 @@ pub fn colour_wheel(hue: f32) -> [u8; 3] {
         (120.0 + 85.0 * wave) as u8
     })
 }
-
-/// Text as it stands in an SVG.
-pub fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
-}

@@ -110,7 +110,7 @@ impl Axis {
 /// One, two or five times a power of ten.
 fn number(value: f64) -> String {
     if (0.9e-4..1e6).contains(&value) {
-        let digits = (-value.log10() + 1e-9).ceil().max(0.0) as usize;
+        let digits = (-value.log10() - 1e-9).ceil().max(0.0) as usize;
         format!("{value:.digits$}")
     } else {
         format!("{value:.0e}")
@@ -134,6 +134,8 @@ pub enum Colour {
     Sky,
     /// For what is usual.
     Grey,
+    /// For means.
+    Black,
 }
 
 impl Colour {
@@ -150,6 +152,7 @@ impl Colour {
             Colour::Orange => RGBColor(230, 159, 0),
             Colour::Sky => RGBColor(86, 180, 233),
             Colour::Grey => RGBColor(128, 128, 128),
+            Colour::Black => RGBColor(0, 0, 0),
         }
     }
 }
@@ -163,6 +166,9 @@ pub struct Series {
     points: Vec<(f64, f64)>,
     line: bool,
     dots: Dots,
+    thin: bool,
+    /// Width of bars from the points to the right.
+    bars: Option<f64>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -175,12 +181,22 @@ enum Dots {
 impl Series {
     /// A line through points.
     pub fn line(name: &str, colour: Colour, points: Vec<(f64, f64)>) -> Series {
-        Series { name: name.to_owned(), colour, points, line: true, dots: Dots::None }
+        Series { name: name.to_owned(), colour, points, line: true, dots: Dots::None, thin: false, bars: None }
     }
 
     /// The same line with a filled dot at every point.
     pub fn marked(self) -> Series {
         Series { dots: Dots::Filled, ..self }
+    }
+
+    /// The same line, thin.
+    pub fn thin(self) -> Series {
+        Series { thin: true, ..self }
+    }
+
+    /// Bars of this width, each with its left upper corner at a point.
+    pub fn bars(name: &str, colour: Colour, width: f64, points: Vec<(f64, f64)>) -> Series {
+        Series { line: false, bars: Some(width), ..Series::line(name, colour, points) }
     }
 
     /// Filled dots.
@@ -319,6 +335,13 @@ impl Panel {
             .draw()?;
         for series in &self.series {
             let place = |&(x, y): &(f64, f64)| chart.backend_coord(&(self.x.place(x), self.y.place(y)));
+            if let Some(width) = series.bars {
+                let (left, top) = area.get_base_pixel();
+                for &(x, y) in &series.points {
+                    let corners = [place(&(x, y)), place(&(x + width, 0.0))].map(|(x, y)| (x - left, y - top));
+                    area.draw(&Rectangle::new(corners, series.colour.rgb().filled()))?;
+                }
+            }
             series.draw(&area, series.points.iter().map(place).collect(), 0)?;
         }
         Ok(())
@@ -336,7 +359,7 @@ impl Series {
         // What is drawn lies in pixels of the whole picture, what an area draws in its own.
         let (left, top) = if bare == 0 { area.get_base_pixel() } else { (0, 0) };
         let pixels: Vec<(i32, i32)> = pixels.into_iter().map(|(x, y)| (x - left, y - top)).collect();
-        let pen = self.colour.rgb().stroke_width(3 * FINE / 2);
+        let pen = self.colour.rgb().stroke_width(if self.thin { 3 * FINE / 4 } else { 3 * FINE / 2 });
         if self.line && pixels.len() > 1 {
             area.draw(&PathElement::new(pixels.clone(), pen))?;
         }

@@ -4,9 +4,9 @@
 mod real_maps;
 
 use glam::DVec2;
+use glint_bake_core::area_light::baked::Maps;
+use glint_bake_core::area_light::baked::decode_tables;
 use glint_bake_core::area_light::eval::LOBES;
-use glint_bake_core::area_light::fetch::Maps;
-use glint_bake_core::area_light::material::decode_tables;
 use glint_bake_core::area_light::quality::{
     Comparison, HighlightError, RadianceGrid, grid_weights, highlight_error, scenes,
 };
@@ -37,7 +37,7 @@ fn all_scenes() -> &'static [(Scene, RadianceGrid)] {
 
 fn measured(data: &std::path::Path, file: &str, sizes: &[f64]) -> Vec<HighlightError> {
     let map = load(data, file, Some((100, 60, 256)));
-    let material = bake(&map, &AreaLightOptions { anisotropic: true, ..Default::default() }, 1 << 30, &Silent).unwrap();
+    let material = bake(&map, &AreaLightOptions { anisotropic: true, ..Default::default() }, &Silent).unwrap();
     let tables = decode_tables(&material.tables);
     let measure = |&size: &f64| {
         // Small footprints see less of the map each, and cost less.

@@ -1,7 +1,7 @@
 //! Fits the LTC tables and writes them to the file named, `bake/src/area_light/ltc_tables.bin` in the repository.
 
+use glint_bake_core::area_light::fit::fit_tables;
 use glint_bake_core::area_light::quality::table_error;
-use glint_bake_core::area_light::tables::fit_tables;
 use std::time::Instant;
 
 fn main() {

@@ -1,11 +1,11 @@
 //! Closed forms and fits for lobes of normals, against integrals in f64.
 
-use glint_bake_core::area_light::convolve::convolve_alpha;
 use glint_bake_core::area_light::eval;
-use glint_bake_core::area_light::fetch::alpha_of_code;
-use glint_bake_core::area_light::reference_lobes::{convolved_alpha, deficit, lobe_density};
-use glint_bake_core::area_light::resultant::{MAX_DEFICIT, alpha_from_deficit, deficit_from_alpha};
+use glint_bake_core::area_light::eval::alpha_of_code;
+use glint_bake_core::area_light::reference::{convolved_alpha, deficit, lobe_density};
+use glint_bake_core::area_light::spread::convolve_alpha;
 use glint_bake_core::area_light::spread::{AlphaOf, KAPPA, axis_concentration, code_of, concentration};
+use glint_bake_core::area_light::spread::{MAX_DEFICIT, alpha_from_deficit, deficit_from_alpha};
 
 /// Roughness from 1e-3 to 1, evenly in the logarithm.
 fn alphas(count: u32) -> impl Iterator<Item = f64> {
@@ -26,11 +26,10 @@ fn roughness_and_deficit_go_both_ways() {
     for alpha in alphas(500) {
         let there = deficit_from_alpha(alpha);
         assert!((alpha_from_deficit(there) / alpha - 1.0).abs() < 1e-12, "α {alpha}");
-        // The f32 twins, against f64 and against each other.
-        let (alpha32, there32) = (alpha as f32, eval::deficit_from_alpha(alpha as f32));
-        let forth = f64::from(there32) / deficit_from_alpha(f64::from(alpha32)) - 1.0;
+        // The run time's, in f32.
+        let there32 = there as f32;
         let back = f64::from(eval::alpha_from_deficit(there32)) / alpha_from_deficit(f64::from(there32)) - 1.0;
-        assert!(forth.abs() < 1e-5 && back.abs() < 1e-5, "α {alpha}: {forth:e} {back:e}");
+        assert!(back.abs() < 1e-5, "α {alpha}: {back:e}");
     }
     for nothing in [0.0, -1.0, f64::NAN] {
         assert_eq!((alpha_from_deficit(nothing), eval::alpha_from_deficit(nothing as f32)), (0.0, 0.0));

@@ -1,12 +1,11 @@
 //! The LTC tables: reproducible, no worse than the published ones, and the clipped sphere against a sum over directions.
 
 use glam::{DVec2, DVec3};
-use glint_bake_core::area_light::ggx;
-use glint_bake_core::area_light::material::decode_tables;
-use glint_bake_core::area_light::quality::table_error;
-use glint_bake_core::area_light::tables::{
-    LtcTables, SIZE, TABLE_MEAN_ERROR, alpha_of, clipped_sphere, cosine_of, fit_tables,
+use glint_bake_core::area_light::baked::{LtcTables, SIZE, TABLE_MEAN_ERROR, decode_tables};
+use glint_bake_core::area_light::fit::{
+    alpha_of, brdf_cosine, clipped_sphere, cosine_of, distribution, fit_tables, visible_density, visible_normal,
 };
+use glint_bake_core::area_light::quality::table_error;
 use std::f64::consts::{PI, TAU};
 
 /// Mean relative error of the published 64 × 64 tables (Heitz et al. 2016), as `table_error` measures it on their values.
@@ -46,8 +45,8 @@ fn magnitudes_are_integrals_of_ggx() {
                 if c <= 0.0 || light.z <= 0.0 {
                     continue;
                 }
-                let share = ggx::brdf_cosine(view, light, alpha) * 4.0 * c
-                    / (ggx::distribution(half, alpha) * z * f64::from(rings * spokes));
+                let share = brdf_cosine(view, light, alpha) * 4.0 * c
+                    / (distribution(half, alpha) * z * f64::from(rings * spokes));
                 magnitude += share;
                 fresnel += share * (1.0 - c).powi(5);
             }
@@ -68,7 +67,7 @@ fn visible_normals_have_the_density_they_say() {
         for j in 0..n {
             let radius = ((f64::from(i) + 0.5) / f64::from(n)).sqrt();
             let phi = TAU * (f64::from(j) + 0.5) / f64::from(n);
-            sampled += ggx::visible_normal(view, alpha, DVec2::new(phi.cos(), phi.sin()) * radius).z;
+            sampled += visible_normal(view, alpha, DVec2::new(phi.cos(), phi.sin()) * radius).z;
             count += 1.0;
         }
     }
@@ -80,7 +79,7 @@ fn visible_normals_have_the_density_they_say() {
             let half = DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos());
             let c = view.dot(half).max(0.0);
             // Over half vectors the density is 4 v·h times that over lights.
-            let density = ggx::visible_density(view, half, alpha) * 4.0 * c * theta.sin();
+            let density = visible_density(view, half, alpha) * 4.0 * c * theta.sin();
             integral += density * half.z;
             total += density;
         }

@@ -1,11 +1,12 @@
 //! The baked dictionary against exact lobes, against its target, and against its contract.
 
+use glint_bake_core::dictionary::bake::to_half_with_sum;
 use glint_bake_core::dictionary::quality::{
     domain_floor, integral_linear, measure, measure_level, read_linear, target_density,
 };
-use glint_bake_core::dictionary::round::to_half_with_sum;
 use glint_bake_core::dictionary::{DictionaryOptions, bake, reference};
 use glint_bake_core::error::BakeError;
+use glint_bake_core::progress::Silent;
 use half::f16;
 
 /// Σ h |table − exact| / Σ h exact over the bin centres of one marginal.
@@ -22,7 +23,7 @@ fn l1_to_exact(options: &DictionaryOptions, table: &[f64], exact: &reference::Ex
 #[test]
 fn tables_are_the_exact_lobes_at_bin_centres() {
     let options = DictionaryOptions { marginals: 24, levels: 14, ..Default::default() };
-    let dictionary = bake(&options).unwrap();
+    let dictionary = bake(&options, &Silent).unwrap();
     // Up to level 8 only rounding to half floats is between them; above, also the sub-bins that lobes are counted in.
     for (level, mean_limit) in [(0, 5e-4), (1, 5e-4), (4, 5e-4), (8, 5e-4), (9, 6e-3), (11, 3e-3), (13, 1.5e-3)] {
         let exact = reference::exact_level(&options, level);
@@ -37,7 +38,7 @@ fn tables_are_the_exact_lobes_at_bin_centres() {
 #[test]
 fn interpolated_marginals_follow_the_exact_density_between_the_entries() {
     let options = DictionaryOptions { marginals: 4, levels: 13, ..Default::default() };
-    let dictionary = bake(&options).unwrap();
+    let dictionary = bake(&options, &Silent).unwrap();
     let exact = reference::exact_level(&options, 12);
     for i in 0..options.marginals {
         let table = dictionary.entries(12, i);
@@ -64,7 +65,7 @@ fn every_marginal_is_normalised_as_the_sampler_reads_it() {
         DictionaryOptions { alpha_dict: 10.0, lobe_std: 0.4, ..Default::default() },
     ];
     for options in sizes {
-        let dictionary = bake(&options).unwrap();
+        let dictionary = bake(&options, &Silent).unwrap();
         for level in 0..options.levels {
             for i in 0..options.marginals {
                 let table = dictionary.entries(level, i);
@@ -79,7 +80,7 @@ fn every_marginal_is_normalised_as_the_sampler_reads_it() {
 #[test]
 fn the_default_dictionary_meets_its_targets_for_any_seed() {
     for seed in [0, 1, 2, 12345, u64::MAX] {
-        let dictionary = bake(&DictionaryOptions { seed, ..Default::default() }).unwrap();
+        let dictionary = bake(&DictionaryOptions { seed, ..Default::default() }, &Silent).unwrap();
         let measured = measure(&dictionary);
         assert!(measured.normalisation <= 1e-4, "seed {seed}: normalisation {:.2e}", measured.normalisation);
         assert!(measured.mean_l1_first_level <= 0.03, "seed {seed}: L1 {:.4}", measured.mean_l1_first_level);
@@ -97,7 +98,7 @@ fn the_default_dictionary_meets_its_targets_for_any_seed() {
 #[test]
 fn a_level_keeps_the_lobes_of_the_level_below() {
     let options = DictionaryOptions { marginals: 16, ..Default::default() };
-    let dictionary = bake(&options).unwrap();
+    let dictionary = bake(&options, &Silent).unwrap();
     for level in 0..options.levels - 1 {
         for i in 0..options.marginals {
             let (below, above) = (dictionary.entries(level, i), dictionary.entries(level + 1, i));
@@ -121,7 +122,7 @@ fn lobes_near_the_end_of_the_domain_are_neither_lost_nor_empty() {
         for exact in reference::exact_level(&options, 0) {
             assert!(exact.density(options.domain() * 1.001) == 0.0);
         }
-        let dictionary = bake(&options).unwrap();
+        let dictionary = bake(&options, &Silent).unwrap();
         for i in 0..options.marginals {
             let table = dictionary.entries(0, i);
             let peak = (0..64).max_by(|a, b| table[*a].total_cmp(&table[*b])).unwrap();
@@ -138,27 +139,35 @@ fn the_bytes_do_not_depend_on_threads_or_platform() {
         bytes.iter().fold(0xcbf2_9ce4_8422_2325u64, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x100_0000_01b3))
     };
     let options = DictionaryOptions::default();
-    let payload = bake(&options).unwrap().payload();
+    let payload =
+        || -> Vec<u8> { bake(&options, &Silent).unwrap().bits.iter().flat_map(|bits| bits.to_le_bytes()).collect() };
+    let first = payload();
     for threads in [1, 2, 7] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        assert!(pool.install(|| bake(&options).unwrap().payload()) == payload, "{threads} threads");
+        assert!(pool.install(payload) == first, "{threads} threads");
     }
-    let other = bake(&DictionaryOptions { seed: 1, ..options }).unwrap().payload();
-    assert!(other != payload, "the seed changes nothing");
-    assert_eq!(digest(&payload), FROZEN_DIGEST, "default dictionary changed: {:#x}", digest(&payload));
+    let other = bake(&DictionaryOptions { seed: 1, ..options }, &Silent).unwrap();
+    assert!(other.bits != bake(&options, &Silent).unwrap().bits, "the seed changes nothing");
+    assert_eq!(digest(&first), FROZEN_DIGEST, "default dictionary changed: {:#x}", digest(&first));
 }
 
-/// FNV-1a of the default dictionary's payload.
+/// FNV-1a of the default dictionary's half floats.
 const FROZEN_DIGEST: u64 = 0x99bf_be9e_9420_d301;
 
 #[test]
-fn the_payload_fits_what_engines_offer() {
-    let dictionary = bake(&DictionaryOptions::default()).unwrap();
-    let shape = dictionary.shape();
-    assert!(dictionary.payload().len() <= 384 * 1024);
-    assert_eq!((shape.width, shape.height, shape.vk_format), (64, 3072, 76));
-    assert_eq!(dictionary.payload().len() as u32, shape.width * shape.height * 2);
-    let params = dictionary.measured_params();
+fn the_table_holds_every_entry_with_the_next() {
+    let dictionary = bake(&DictionaryOptions::default(), &Silent).unwrap();
+    let pairs = dictionary.pairs();
+    assert_eq!(pairs.len(), 64 * 3072);
+    for (row, words) in dictionary.bits.chunks_exact(64).zip(pairs.chunks_exact(64)) {
+        for b in 0..64 {
+            assert_eq!(words[b], u32::from(row[b]) | u32::from(row[63.min(b + 1)]) << 16);
+        }
+    }
+    let odd = DictionaryOptions { marginals: 1, levels: 1, entries: 53, ..Default::default() };
+    let pairs = bake(&odd, &Silent).unwrap().pairs();
+    assert_eq!((pairs.len(), &pairs[53..]), (56, &[0; 3][..]));
+    let params = dictionary.params(measure(&dictionary));
     assert_eq!((params.marginals, params.levels, params.entries), (192, 16, 64));
     assert!(params.measured.ks_last_level > 0.0);
 }
@@ -167,23 +176,23 @@ fn the_payload_fits_what_engines_offer() {
 fn what_cannot_work_is_refused_by_name() {
     let default = DictionaryOptions::default();
     let cases = [
-        (DictionaryOptions { marginals: 0, ..default }, "--marginals is 0"),
-        (DictionaryOptions { levels: 0, ..default }, "--levels is 0"),
-        (DictionaryOptions { entries: 0, ..default }, "--entries is 0"),
-        (DictionaryOptions { levels: 21, ..default }, "--levels is 21"),
-        (DictionaryOptions { alpha_dict: 0.0, ..default }, "--alpha-dict is 0"),
-        (DictionaryOptions { alpha_dict: f64::NAN, ..default }, "--alpha-dict is NaN"),
-        (DictionaryOptions { alpha_dict: 1e6, ..default }, "--alpha-dict is 1000000"),
-        (DictionaryOptions { lobe_std: 0.0, ..default }, "--lobe-std is 0"),
-        (DictionaryOptions { lobe_std: f64::INFINITY, ..default }, "--lobe-std is inf"),
-        (DictionaryOptions { lobe_std: 2.0, ..default }, "above the domain"),
-        (DictionaryOptions { lobe_std: 0.5, ..default }, "wider than the target"),
+        (DictionaryOptions { marginals: 0, ..default }, "marginals: expected 1 or more, found 0"),
+        (DictionaryOptions { levels: 0, ..default }, "levels: expected 1 or more, found 0"),
+        (DictionaryOptions { entries: 0, ..default }, "entries: expected 1 or more, found 0"),
+        (DictionaryOptions { levels: 21, ..default }, "levels: expected 1 to 20, found 21"),
+        (DictionaryOptions { alpha_dict: 0.0, ..default }, "found 0;"),
+        (DictionaryOptions { alpha_dict: f64::NAN, ..default }, "found NaN;"),
+        (DictionaryOptions { alpha_dict: 1e6, ..default }, "found 1000000;"),
+        (DictionaryOptions { lobe_std: 0.0, ..default }, "lobe-std: expected a slope of 0.00001 or more"),
+        (DictionaryOptions { lobe_std: f64::INFINITY, ..default }, "found inf"),
+        (DictionaryOptions { lobe_std: 2.0, ..default }, "below the domain"),
+        (DictionaryOptions { lobe_std: 0.5, ..default }, "narrower than the target"),
         (DictionaryOptions { lobe_std: 0.001, ..default }, "table empty"),
-        (DictionaryOptions { entries: 16, ..default }, "--entries 25 or more"),
-        (DictionaryOptions { entries: 1, lobe_std: 0.6, ..default }, "wider than the target"),
+        (DictionaryOptions { entries: 16, ..default }, "25 entries or more"),
+        (DictionaryOptions { entries: 1, lobe_std: 0.6, ..default }, "narrower than the target"),
     ];
     for (options, expected) in cases {
-        match bake(&options) {
+        match bake(&options, &Silent) {
             Err(BakeError::BadOption(message)) => assert!(message.contains(expected), "{message} lacks {expected}"),
             other => {
                 panic!("{options:?}: expected a refusal with '{expected}', got {:?}", other.map(|_| "a dictionary"))
@@ -191,9 +200,9 @@ fn what_cannot_work_is_refused_by_name() {
         }
     }
     let large = DictionaryOptions { marginals: 1000, ..default };
-    assert!(matches!(bake(&large), Err(BakeError::LimitExceeded(m)) if m.contains("16000")));
+    assert!(matches!(bake(&large, &Silent), Err(BakeError::LimitExceeded(m)) if m.contains("16000")));
     let advised = DictionaryOptions { entries: 25, ..default };
-    assert!(bake(&advised).is_ok(), "the message's own advice must work");
+    assert!(bake(&advised, &Silent).is_ok(), "the message's own advice must work");
 }
 
 #[test]

@@ -2,19 +2,20 @@
 
 use glam::{DVec2, Vec2, Vec3};
 use glint_bake_core::brdf::{masking, normal_to_slope, sdf_to_ndf};
+use glint_bake_core::dictionary::baked::Tables;
 use glint_bake_core::dictionary::eval::{
-    GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_sdf, patch_sdf, slope_query,
+    DictionaryMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_sdf, patch_sdf, slope_query,
 };
 use glint_bake_core::dictionary::reference::smooth_density;
-use glint_bake_core::dictionary::tables::Tables;
 use glint_bake_core::dictionary::{DictionaryOptions, bake};
 use glint_bake_core::hash::cell_state;
+use glint_bake_core::progress::Silent;
 use std::f64::consts::PI;
 
-fn material(target: u32, alpha: Vec2, density: f32) -> GlintMaterial {
-    GlintMaterial {
+fn material(target: u32, alpha: Vec2, density: f32) -> DictionaryMaterial {
+    DictionaryMaterial {
         alpha,
-        target,
+        normal_target: target,
         density,
         relative_area: 1.0,
         density_randomisation: 0.0,
@@ -33,8 +34,8 @@ fn slope_at(ggx: bool, alpha: DVec2, u: f64, phi: f64) -> DVec2 {
 }
 
 /// ∫|cell − target| of one cell at a level of the dictionary, over n × 2n equal shares of the target.
-fn cell_l1(tables: &Tables, m: &GlintMaterial, cell: u32, level: f32, n: usize) -> f64 {
-    let ggx = m.target == TARGET_GGX;
+fn cell_l1(tables: &Tables, m: &DictionaryMaterial, cell: u32, level: f32, n: usize) -> f64 {
+    let ggx = m.normal_target == TARGET_GGX;
     let alpha = m.alpha.as_dvec2();
     let mut sum = 0.0;
     for a in 0..n {
@@ -48,7 +49,7 @@ fn cell_l1(tables: &Tables, m: &GlintMaterial, cell: u32, level: f32, n: usize) 
                 level,
                 &slope_query(tables, m, slope.as_vec2()),
             )
-            .0
+            .sdf
             .x;
             sum += (f64::from(value) / smooth_density(ggx, alpha, slope) - 1.0).abs();
         }
@@ -58,7 +59,7 @@ fn cell_l1(tables: &Tables, m: &GlintMaterial, cell: u32, level: f32, n: usize) 
 
 #[test]
 fn one_cell_at_the_last_level_is_near_the_smooth_target() {
-    let tables = bake(&DictionaryOptions::default()).unwrap().tables();
+    let tables = bake(&DictionaryOptions::default(), &Silent).unwrap().tables();
     for (target, limit) in [(TARGET_BECKMANN, 0.03), (TARGET_GGX, 0.05)] {
         for alpha in [Vec2::splat(0.5), Vec2::splat(1e-3), Vec2::new(1.0, 0.01)] {
             let m = material(target, alpha, 1e9);
@@ -77,7 +78,7 @@ fn one_cell_at_the_last_level_is_near_the_smooth_target() {
 
 #[test]
 fn infinite_density_gives_the_smooth_target() {
-    let tables = bake(&DictionaryOptions::default()).unwrap().tables();
+    let tables = bake(&DictionaryOptions::default(), &Silent).unwrap().tables();
     for ggx in [false, true] {
         for alpha in [Vec2::splat(0.3), Vec2::splat(1e-3), Vec2::new(1.0, 0.01), Vec2::new(0.01, 1.0)] {
             let m = material(u32::from(ggx), alpha, 1e16);
@@ -102,8 +103,8 @@ fn infinite_density_gives_the_smooth_target() {
 }
 
 /// Mean over cells at a level, in 8 × 8 equal shares of the target: mean distance of a share from what it should be.
-fn mean_over_cells_l1(tables: &Tables, m: &GlintMaterial, level: f32, cells: u32) -> f64 {
-    let ggx = m.target == TARGET_GGX;
+fn mean_over_cells_l1(tables: &Tables, m: &DictionaryMaterial, level: f32, cells: u32) -> f64 {
+    let ggx = m.normal_target == TARGET_GGX;
     let alpha = m.alpha.as_dvec2();
     let mut shares = [0.0; 64];
     for cell in 0..cells {
@@ -122,7 +123,7 @@ fn mean_over_cells_l1(tables: &Tables, m: &GlintMaterial, level: f32, cells: u32
                         level,
                         &slope_query(tables, m, slope.as_vec2()),
                     )
-                    .0
+                    .sdf
                     .x,
                 );
                 shares[a / 2 * 8 + b / 2] += value / smooth_density(ggx, alpha, slope);
@@ -134,7 +135,7 @@ fn mean_over_cells_l1(tables: &Tables, m: &GlintMaterial, level: f32, cells: u32
 
 #[test]
 fn the_mean_over_cells_is_the_target_at_every_level_up_to_100_to_1() {
-    let tables = bake(&DictionaryOptions::default()).unwrap().tables();
+    let tables = bake(&DictionaryOptions::default(), &Silent).unwrap().tables();
     for target in [TARGET_BECKMANN, TARGET_GGX] {
         for alpha in [Vec2::splat(0.5), Vec2::new(1.0, 0.01)] {
             let m = material(target, alpha, 1e9);
@@ -155,8 +156,8 @@ fn the_mean_over_cells_is_the_target_at_every_level_up_to_100_to_1() {
 /// ∫ G₁(o, h) D(h) (o·h) / (o·n) dω_h for three view directions, by the midpoint rule over rings and directions. Rings
 /// are even in the radius of the dictionary, out to the corner of its domain. The half vector's solid angle is that of
 /// its slope times z³.
-fn furnace(tables: &Tables, m: &GlintMaterial, pixel: PixelOnSurface, thetas: [f64; 3], n: usize) -> [f64; 3] {
-    let ggx = m.target == TARGET_GGX;
+fn furnace(tables: &Tables, m: &DictionaryMaterial, pixel: PixelOnSurface, thetas: [f64; 3], n: usize) -> [f64; 3] {
+    let ggx = m.normal_target == TARGET_GGX;
     let alpha = m.alpha.as_dvec2();
     let mut sums = [0.0; 3];
     let ring = 4.0 / n as f64;
@@ -184,7 +185,7 @@ fn furnace(tables: &Tables, m: &GlintMaterial, pixel: PixelOnSurface, thetas: [f
 
 #[test]
 fn weak_white_furnace() {
-    let tables = bake(&DictionaryOptions::default()).unwrap().tables();
+    let tables = bake(&DictionaryOptions::default(), &Silent).unwrap().tables();
     let step = 2f32.powi(-12);
     let pixel = PixelOnSurface {
         position: Vec2::new(0.213, 0.577),

@@ -1,12 +1,14 @@
 //! The run-time twin against the f64 reference: hash, cells under the footprint, slope distribution.
 
 use glam::{Vec2, Vec3};
-use glint_bake_core::dictionary::cells::{cell_weight, level_window, max_cells, pixel_footprint, row_span};
 use glint_bake_core::dictionary::eval::{
-    GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_rotation, log1p_over_x, patch_sdf, smooth_sdf,
+    DictionaryMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_rotation, log1p_over_x, patch_sdf, smooth_sdf,
 };
+use glint_bake_core::dictionary::eval::{cell_weight, level_window, pixel_footprint, row_span};
+use glint_bake_core::dictionary::quality::max_cells;
 use glint_bake_core::dictionary::{DictionaryOptions, bake, reference};
 use glint_bake_core::hash::{CellState, cell_state, draw_bits, uniform_from_bits};
+use glint_bake_core::progress::Silent;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use std::collections::HashSet;
@@ -15,10 +17,10 @@ fn uniform(rng: &mut Pcg64) -> f32 {
     (rng.next_u32() >> 8) as f32 / 16_777_216.0
 }
 
-fn material(target: u32) -> GlintMaterial {
-    GlintMaterial {
+fn material(target: u32) -> DictionaryMaterial {
+    DictionaryMaterial {
         alpha: Vec2::splat(0.5),
-        target,
+        normal_target: target,
         density: 1e9,
         relative_area: 1.0,
         density_randomisation: 0.01,
@@ -32,7 +34,7 @@ fn material(target: u32) -> GlintMaterial {
 #[test]
 fn the_twin_agrees_with_the_reference() {
     let options = DictionaryOptions { marginals: 64, ..Default::default() };
-    let dictionary = bake(&options).unwrap();
+    let dictionary = bake(&options, &Silent).unwrap();
     let tables = dictionary.tables();
     let mut rows = Vec::new();
     for level in 0..options.levels {
@@ -93,8 +95,8 @@ fn every_cell_of_the_ellipse_is_visited_once_and_the_count_is_bounded() {
             let window = level_window(footprint, position, level);
             let (mut visited, mut total) = (HashSet::new(), 0.0f64);
             for row in window.first_row..=window.last_row {
-                let (first, last) = row_span(window, row);
-                for column in first..=last {
+                let span = row_span(window, row);
+                for column in span.x..=span.y {
                     assert!(visited.insert((column, row)));
                     total += f64::from(cell_weight(window, column, row));
                 }

@@ -1,17 +1,18 @@
 //! Hard cases: extreme roughness, density, footprints and directions. Always finite, never negative, bounded work.
 
 use glam::{Vec2, Vec3};
-use glint_bake_core::dictionary::cells::max_cells;
 use glint_bake_core::dictionary::eval::patch_brdf;
 use glint_bake_core::dictionary::eval::{
-    GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, patch_sdf, smooth_sdf,
+    DictionaryMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, patch_sdf, smooth_sdf,
 };
+use glint_bake_core::dictionary::quality::max_cells;
 use glint_bake_core::dictionary::{DictionaryOptions, bake};
+use glint_bake_core::progress::Silent;
 
-fn material() -> GlintMaterial {
-    GlintMaterial {
+fn material() -> DictionaryMaterial {
+    DictionaryMaterial {
         alpha: Vec2::splat(0.5),
-        target: TARGET_BECKMANN,
+        normal_target: TARGET_BECKMANN,
         density: 1e8,
         relative_area: 1.0,
         density_randomisation: 1.0,
@@ -28,7 +29,7 @@ fn direction(theta: f32, phi: f32) -> Vec3 {
 
 #[test]
 fn every_extreme_gives_a_finite_bounded_answer() {
-    let tables = bake(&DictionaryOptions { marginals: 32, ..Default::default() }).unwrap().tables();
+    let tables = bake(&DictionaryOptions { marginals: 32, ..Default::default() }, &Silent).unwrap().tables();
     let fine = 2f32.powi(-15);
     let footprints = [
         (Vec2::ZERO, Vec2::ZERO),
@@ -50,7 +51,7 @@ fn every_extreme_gives_a_finite_bounded_answer() {
             for density in [0.0f32, 1e-16, 1.0, 1e8, 1e16] {
                 for (d_dx, d_dy) in footprints {
                     let mut m = material();
-                    m.target = target;
+                    m.normal_target = target;
                     m.alpha = Vec2::new(alpha.0, alpha.1);
                     m.density = density;
                     for position in [Vec2::ZERO, Vec2::new(-0.7, 123.4), Vec2::new(1e12, -1e30)] {
@@ -81,7 +82,7 @@ fn every_extreme_gives_a_finite_bounded_answer() {
 #[test]
 fn a_footprint_of_zero_area_still_integrates_to_one() {
     // The mass of the slope distribution on a grid fine enough for the lobes (σ = 0.02 of a domain of 1.41).
-    let tables = bake(&DictionaryOptions { marginals: 32, ..Default::default() }).unwrap().tables();
+    let tables = bake(&DictionaryOptions { marginals: 32, ..Default::default() }, &Silent).unwrap().tables();
     for density in [0.0, 1e6, 1e9] {
         for size in [0.0, 1e4 * 2f32.powi(-15)] {
             let mut m = material();
@@ -107,7 +108,7 @@ fn a_footprint_of_zero_area_still_integrates_to_one() {
 #[test]
 fn zooming_and_moving_never_jumps() {
     // Small steps in footprint size and position change the distribution little, across whole levels too.
-    let tables = bake(&DictionaryOptions::default()).unwrap().tables();
+    let tables = bake(&DictionaryOptions::default(), &Silent).unwrap().tables();
     let m = material();
     let mut largest = 0.0f32;
     let mut previous: Option<[f32; 8]> = None;
@@ -136,7 +137,7 @@ fn zooming_and_moving_never_jumps() {
 
 #[test]
 fn coverage_and_colour_have_the_right_means() {
-    let tables = bake(&DictionaryOptions::default()).unwrap().tables();
+    let tables = bake(&DictionaryOptions::default(), &Silent).unwrap().tables();
     let mut m = material();
     m.relative_area = 0.25;
     m.colours = vec![Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.5), Vec3::new(0.2, 0.5, 1.0)];

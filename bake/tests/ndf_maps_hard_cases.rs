@@ -116,5 +116,5 @@ fn options_without_meaning_are_refused_with_their_name() {
 fn a_large_map_is_refused_with_advice() {
     let map = map(256, 128, |_, _| [0.0, 0.0]);
     let error = bake_maps(&map, &NdfMapsOptions::default(), &Silent).unwrap_err();
-    assert!(matches!(&error, BakeError::LimitExceeded(what) if what.contains("--crop")), "{error}");
+    assert!(matches!(&error, BakeError::LimitExceeded(what) if what.contains("use a part of it")), "{error}");
 }

@@ -66,7 +66,8 @@ PARAMETERS = {
         measured=dict(seam_ratio="f64", distinct_offsets="u32")),
 }
 KINDS = set(PARAMETERS) | set(
-    "NMTI NMDE NMNO PLPL PLNO PLCL SDTB ENUB ENRA ENIN ENCO ENAL ALNM ALRO ALLI ALLT LOUB LOBE LONM SYPO SYSE".split())
+    "NMUB NMTI NMDE NMNO PLNO PLCL LAUB SDUB SDTB ENUB ENRA ENIN ENCO ENAL ALUB ALNM ALRO ALLI ALLT LOUB LOBE LONM SYPO "
+    "SYSE".split())
 TEXEL_BYTES = {9: 1, 10: 1, 13: 1, 16: 2, 17: 2, 37: 4, 38: 4, 41: 4, 70: 2, 71: 2, 74: 2, 76: 2, 77: 4, 78: 4, 81: 4,
                83: 4, 91: 8, 92: 8, 95: 8, 97: 8, 98: 4, 100: 4, 101: 8, 103: 8, 107: 16, 109: 16, 122: 4, 123: 4}
 

@@ -84,9 +84,11 @@ issue_codes! {
     LayerName = 3018, "layer names a missing material";
     LayerValue = 3019, "layer reflectance out of range";
     DictionaryParameters = 3020, "dictionary parameter out of range";
-    DictionaryShape = 3021, "dictionary table differs from parameters";
+    DictionaryShape = 3021, "dictionary buffer differs from parameters";
     DictionaryValue = 3022, "dictionary value out of range";
     DictionaryRow = 3023, "dictionary row not normalised";
+    DictionaryUniform = 3024, "dictionary uniforms differ from parameters";
+    DictionaryPair = 3025, "dictionary pair differs from its row";
     EnvironmentParameters = 3030, "environment parameter out of range";
     EnvironmentLevels = 3031, "environment levels do not rise from 0";
     EnvironmentShape = 3032, "environment section differs from parameters";
@@ -95,11 +97,12 @@ issue_codes! {
     EnvironmentAlbedo = 3035, "environment albedo out of range";
     EnvironmentUniform = 3036, "environment uniform differs from parameters";
     AreaLightParameters = 3040, "area light parameter out of range";
-    AreaLightShape = 3041, "area light texture differs from parameters";
+    AreaLightShape = 3041, "area light resource differs from parameters";
     AreaLightNormal = 3042, "area light normal out of range";
     AreaLightRoughness = 3043, "area light roughness out of range";
     LtcShape = 3044, "LTC table of wrong format or size";
     LtcValue = 3045, "LTC table value out of range";
+    AreaLightUniform = 3046, "area light uniforms differ from parameters";
     LobesParameters = 3050, "lobe parameter out of range";
     LobesLevels = 3051, "lobe levels inconsistent";
     LobesCount = 3052, "lobe count differs from levels";
@@ -115,6 +118,8 @@ issue_codes! {
     SynthesisSeam = 3063, "synthesis seam path broken";
     SurfaceMismatch = 3064, "lobes and synthesis of a surface do not fit";
     SynthesisPadding = 3065, "synthesis buffer does not end with zeros";
+    NdfUniform = 3070, "NDF map uniform differs from parameters";
+    LayerUniform = 3071, "layered material uniform differs from parameters";
 }
 
 impl fmt::Display for IssueCode {

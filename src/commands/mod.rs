@@ -2,7 +2,6 @@
 
 mod bake;
 mod build;
-
 mod demo;
 mod export;
 pub mod flag_tables;

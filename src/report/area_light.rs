@@ -7,17 +7,17 @@ use super::table::Table;
 use crate::exit::Failure;
 use crate::plot::{Axis, Colour, Figure, Panel, Series};
 use glam::{DVec2, Vec2};
-use glint_bake_core::area_light::baseline::{paper_convolution, paper_meso_alpha};
-use glint_bake_core::area_light::convolve::convolve_alpha;
-use glint_bake_core::area_light::eval::{self, LOBES, Tables, isotropic_radiance, surface_radiance};
-use glint_bake_core::area_light::fetch::{Maps, fetch};
-use glint_bake_core::area_light::material::decode_tables;
-use glint_bake_core::area_light::mips::mip_chain;
+use glint_bake_core::area_light::bake::mip_chain;
+use glint_bake_core::area_light::baked::{LtcTables, Maps, Tables, decode_tables};
+use glint_bake_core::area_light::eval::{self, LOBES, fetch, surface_radiance};
+use glint_bake_core::area_light::fit::fit_tables;
+use glint_bake_core::area_light::paper::{paper_convolution, paper_meso_alpha};
 use glint_bake_core::area_light::quality::*;
-use glint_bake_core::area_light::reference::{Scene, facet_radiance, footprint_normals, footprint_radiance, lift};
-use glint_bake_core::area_light::reference_lobes::{convolved_alpha, deficit};
-use glint_bake_core::area_light::resultant::{alpha_from_deficit, deficit_from_alpha};
-use glint_bake_core::area_light::tables::{LtcTables, fit_tables};
+use glint_bake_core::area_light::rect::isotropic_radiance;
+use glint_bake_core::area_light::reference::{
+    Scene, convolved_alpha, deficit, facet_radiance, footprint_normals, footprint_radiance, lift,
+};
+use glint_bake_core::area_light::spread::{alpha_from_deficit, convolve_alpha, deficit_from_alpha};
 use glint_bake_core::area_light::{AreaLightOptions, pack};
 use glint_bake_core::footprint::Footprint;
 use glint_bake_core::normal_map::NormalMap;
@@ -232,7 +232,7 @@ fn distances(
     settings: &Settings,
 ) -> Result<(Part, Vec<HighlightError>), Failure> {
     let start = cpu_seconds();
-    let levels = mip_chain(map, 8 << 30, &Silent)?;
+    let levels = mip_chain(map, &Silent);
     let pack_as = |storage| pack(map, &levels, &AreaLightOptions { storage, anisotropic: true, ..Default::default() });
     let material = pack_as(NormalStorage::F16);
     let seconds = cpu_seconds() - start;

@@ -7,14 +7,15 @@ use crate::exit::Failure;
 use crate::plot::{Axis, Colour, Figure, Panel, Series};
 use glam::{DVec2, Vec2, Vec3};
 use glint_bake_core::brdf::{masking, normal_to_slope, sdf_to_ndf};
+use glint_bake_core::dictionary::baked::{Dictionary, Tables};
 use glint_bake_core::dictionary::eval::{
-    GlintMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_sdf, patch_sdf, slope_query,
+    DictionaryMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_sdf, patch_sdf, slope_query,
 };
 use glint_bake_core::dictionary::quality::{LevelQuality, domain_floor, measure_level};
 use glint_bake_core::dictionary::reference::smooth_density;
-use glint_bake_core::dictionary::tables::{Dictionary, Tables};
 use glint_bake_core::dictionary::{DictionaryOptions, bake};
 use glint_bake_core::hash::cell_state;
+use glint_bake_core::progress::Silent;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::PI;
@@ -26,7 +27,7 @@ pub const HEADLINE: &str = "Default dictionary (";
 /// Measures the report.
 pub fn measure(settings: &Settings) -> Result<Document, Failure> {
     let options = DictionaryOptions::default();
-    let dictionary = bake(&options)?;
+    let dictionary = bake(&options, &Silent)?;
     let levels: Vec<LevelQuality> = (0..options.levels).map(|level| measure_level(&dictionary, level)).collect();
     let mut document = Document::new("dictionary", "Slope dictionary: speed against error", settings);
     document.headline(&headline(&options, &levels)?);
@@ -41,10 +42,10 @@ pub fn measure(settings: &Settings) -> Result<Document, Failure> {
 /// Least time of eight bakes, in seconds. The bake has one thread, so on a quiet machine this is its processor time.
 fn bake_seconds(options: &DictionaryOptions) -> Result<(Dictionary, f64), Failure> {
     let mut least = f64::MAX;
-    let mut dictionary = bake(options)?;
+    let mut dictionary = bake(options, &Silent)?;
     for _ in 0..8 {
         let start = Instant::now();
-        dictionary = bake(options)?;
+        dictionary = bake(options, &Silent)?;
         least = least.min(start.elapsed().as_secs_f64());
     }
     Ok((dictionary, least))
@@ -61,7 +62,7 @@ fn headline(options: &DictionaryOptions, levels: &[LevelQuality]) -> Result<Stri
         options.marginals,
         options.levels,
         options.entries,
-        dictionary.payload().len() as f64 / 1024.0,
+        (4 * dictionary.pairs().len()) as f64 / 1024.0,
         seconds,
         levels[0].l1_of_mean,
         last.ks_mean,
@@ -123,7 +124,7 @@ fn by_size(document: &mut Document, default: &DictionaryOptions, settings: &Sett
     for options in all {
         let (dictionary, seconds) = bake_seconds(&options)?;
         let tables = dictionary.tables();
-        let bytes = dictionary.payload().len();
+        let bytes = 4 * dictionary.pairs().len();
         let mut worst: f64 = 1.0;
         let mut normalisation: f64 = 0.0;
         for level in 0..options.levels {
@@ -158,10 +159,10 @@ fn by_size(document: &mut Document, default: &DictionaryOptions, settings: &Sett
     Ok(())
 }
 
-fn material(target: u32, alpha: f32, density: f32, max_anisotropy: f32) -> GlintMaterial {
-    GlintMaterial {
+fn material(target: u32, alpha: f32, density: f32, max_anisotropy: f32) -> DictionaryMaterial {
+    DictionaryMaterial {
         alpha: Vec2::splat(alpha),
-        target,
+        normal_target: target,
         density,
         relative_area: 1.0,
         density_randomisation: 0.01,
@@ -194,7 +195,7 @@ fn one_cell_l1(tables: &Tables, target: u32) -> f64 {
                         level,
                         &slope_query(tables, &m, slope.as_vec2()),
                     )
-                    .0
+                    .sdf
                     .x,
                 );
                 sum += (value / smooth_density(ggx, DVec2::splat(0.5), slope) - 1.0).abs();
@@ -292,13 +293,13 @@ fn furnaces(document: &mut Document, tables: &Tables, settings: &Settings) {
 }
 
 /// ∫ G₁(o, h) D(h) (o·h) / (o·n) dω_h at θ = 0, π/4 and 1.56, over `n` rings of 2 `n` directions.
-fn furnace(tables: &Tables, m: &GlintMaterial, pixel: PixelOnSurface, n: usize) -> [f64; 3] {
+fn furnace(tables: &Tables, m: &DictionaryMaterial, pixel: PixelOnSurface, n: usize) -> [f64; 3] {
     let ring = 4.0 / n as f64;
     let alpha = f64::from(m.alpha.x);
     let mut sums = [0.0; 3];
     for a in 0..n {
         let t = (a as f64 + 0.5) * ring;
-        let ggx = m.target == TARGET_GGX;
+        let ggx = m.normal_target == TARGET_GGX;
         let r = if ggx { libm::expm1(t * t).sqrt() } else { t };
         let r_dr = if ggx { t * libm::exp(t * t) } else { t } * ring;
         for b in 0..2 * n {

@@ -135,10 +135,10 @@ fn variances(document: &mut Document, all: &[Subject], max_degrees: f64, scale: 
             let mean = error_of(
                 exact.iter().enumerate().map(|(k, m)| [brightness(chances(&baked[2], k).smooth_radiance), m.mean]),
             );
-            let variance = |environment: &Environment, spread: Option<f32>| {
+            let variance = |environment: &Environment, std_factor: Option<f32>| {
                 error_of(exact.iter().enumerate().map(|(k, m)| {
                     let chances = chances(environment, k);
-                    let chances = Chances { std_factor: spread.unwrap_or(chances.std_factor), ..chances };
+                    let chances = Chances { std_factor: std_factor.unwrap_or(chances.std_factor), ..chances };
                     let smooth = brightness(chances.smooth_radiance);
                     let drawn = f64::from(relative_variance(&chances, 1.0)) * smooth * smooth;
                     [drawn, m.relative_variance(1.0) * m.mean * m.mean]

@@ -29,9 +29,9 @@ mod with_viewer {
     use crate::report::settings::Settings;
     use crate::report::table::Table;
     use glint_bake_core::lobes::options::default_cell;
-    use glint_bake_core::ndf_maps::placement::{PlacementOptions, StochasticOptions};
+    use glint_bake_core::ndf_maps::options::{Options as NdfMapsOptions, PlacementOptions, StochasticOptions};
     use glint_bake_core::progress::Silent;
-    use glint_bake_core::surface::bake::ALIGNMENT;
+    use glint_bake_core::surface::{ALIGNMENT, SurfaceOptions};
     use glint_bake_core::synthesis::{SynthesisOptions, Target};
     use glint_bake_core::{area_light, dictionary, environment, lobes, ndf_maps, surface};
     use glint_formats::{Codec, Limits, Pack, PackBuilder, Section};
@@ -49,8 +49,7 @@ mod with_viewer {
     const SKY: &str = "hdri/dancing_hall_1k.hdr";
     /// Edge of the part of a large map that becomes lobes.
     const PART: u32 = 256;
-    /// Most bytes of a map and its mips.
-    const MAX_MEMORY: u64 = 4 << 30;
+    const QUICK_PART: u32 = 128;
 
     /// Makes the sections of one pack.
     type Bake = fn(&Settings) -> Result<Vec<Section>, Failure>;
@@ -188,23 +187,22 @@ mod with_viewer {
     }
 
     fn bake_dictionary(_: &Settings) -> Result<Vec<Section>, Failure> {
-        let baked = dictionary::bake(&Default::default())?;
+        let baked = dictionary::bake(&Default::default(), &Silent)?;
         let quality = dictionary::quality::measure(&baked);
         Ok(dictionary::sections::to_sections("dictionary", &baked, quality, Codec::None))
     }
 
     fn bake_ndf_maps(settings: &Settings, file: &str, placement: &PlacementOptions) -> Result<Vec<Section>, Failure> {
         let map = settings.normal_map(file, None)?;
-        let options = ndf_maps::bake::NdfMapsOptions::default();
-        let placement = ndf_maps::placement::bake(&map, options.roughness, placement)?;
-        let maps = ndf_maps::bake::bake(&map, &options, &Silent)?;
-        let material = ndf_maps::eval::Material { maps, placement };
+        let options = NdfMapsOptions { maps: Default::default(), placement: *placement };
+        let material = ndf_maps::bake::bake(&map, &options, &Silent)?;
         Ok(ndf_maps::sections::to_sections(stem(file), &material, Codec::None))
     }
 
     fn bake_lobes(settings: &Settings, lobes_per_cell: u32) -> Result<Vec<Section>, Failure> {
-        let map = settings.normal_map(LEATHER, Some(PART))?;
-        let cell_texels = default_cell(PART, PART);
+        let part = settings.pick(PART, QUICK_PART);
+        let map = settings.normal_map(LEATHER, Some(part))?;
+        let cell_texels = default_cell(part, part);
         let options =
             lobes::LobesOptions { lobes_per_cell, cell_texels, footprints: 0, ..lobes::LobesOptions::default() };
         let baked = lobes::bake(&map, &options, &Silent)?;
@@ -212,12 +210,12 @@ mod with_viewer {
     }
 
     fn bake_surface(settings: &Settings) -> Result<Vec<Section>, Failure> {
-        let map = settings.normal_map(GOLD, Some(PART))?;
+        let map = settings.normal_map(GOLD, Some(settings.pick(PART, QUICK_PART)))?;
         let edge = settings.pick(4096, 512);
         let target = Target::Patches { width: edge, height: edge };
         let synthesis = SynthesisOptions { target, alignment: ALIGNMENT, seed: 1, ..SynthesisOptions::default() };
-        let options = lobes::LobesOptions { cell_texels: 8, footprints: 0, ..lobes::LobesOptions::default() };
-        let baked = surface::bake(&map, &options, &synthesis, &Silent)?;
+        let lobes = lobes::LobesOptions { cell_texels: 8, footprints: 0, ..lobes::LobesOptions::default() };
+        let baked = surface::bake(&map, &SurfaceOptions { lobes, synthesis }, &Silent)?;
         Ok(surface::sections::to_sections(stem(GOLD), &baked, Codec::None))
     }
 
@@ -234,9 +232,9 @@ mod with_viewer {
     }
 
     fn bake_area_light(settings: &Settings, file: &str, anisotropic: bool) -> Result<Vec<Section>, Failure> {
-        let map = settings.normal_map(file, settings.pick(None, Some(PART)))?;
+        let map = settings.normal_map(file, settings.pick(None, Some(QUICK_PART)))?;
         let options = area_light::AreaLightOptions { anisotropic, ..Default::default() };
-        let baked = area_light::bake(&map, &options, MAX_MEMORY, &Silent)?;
+        let baked = area_light::bake(&map, &options, &Silent)?;
         Ok(area_light::sections::to_sections(stem(file), &baked, Codec::None))
     }
 

@@ -8,6 +8,7 @@ use glam::Vec3;
 use glint_bake_core::error::BakeError;
 use glint_bake_core::{area_light, dictionary, environment, lobes, ndf_maps, surface, synthesis};
 use glint_formats::lobes::{BINDINGS, LobesParams};
+use glint_formats::ndf_maps::MaterialUniform;
 use glint_formats::{Pack, Wrap};
 use std::rc::Rc;
 
@@ -65,13 +66,13 @@ impl Subjects {
 
     fn add_dictionaries(&mut self, gpu: &Gpu, pack: &Pack, colours: &[Vec3]) -> Result<(), GpuError> {
         for name in dictionary::sections::dictionaries(pack) {
-            let (tables, params) = dictionary::sections::from_pack(pack, name).map_err(bad)?;
+            let params = dictionary::sections::params(pack, name).map_err(bad)?;
             let mut material = Material { alpha: [params.alpha_dict as f32; 2], ..Material::default() };
             if !colours.is_empty() {
                 material.colours = colours.len() as u32;
                 material.mean_colour = (colours.iter().sum::<Vec3>() / colours.len() as f32).to_array();
             }
-            let data = Rc::new(methods::dictionary::upload(gpu, &tables, colours));
+            let data = Rc::new(methods::dictionary::upload(gpu, pack, name, colours)?);
             self.add(Method::Dictionary, name, &data, material);
         }
         Ok(())
@@ -79,19 +80,20 @@ impl Subjects {
 
     /// Layered materials first, then each of its own.
     fn add_ndf_maps(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
-        let read = |name: &str| ndf_maps::sections::from_pack(pack, name).map_err(bad);
-        for layered in ndf_maps::sections::layered(pack).map_err(bad)? {
+        let read = |name: &str| ndf_maps::sections::uniform(pack, name).map_err(bad);
+        for (name, layered) in ndf_maps::sections::layered(pack).map_err(bad)? {
             let (base, coat) = (read(&layered.base)?, read(&layered.coat)?);
-            let data = Rc::new(methods::ndf_maps::upload(gpu, &base, Some((&coat, layered.coat_f0)))?);
+            let data = methods::ndf_maps::bind(gpu, pack, &layered.base, Some((&layered.coat, name)))?;
             let material = Material { f0: layered.base_f0, ..ndf_material(&base) };
-            let shown = self.add(Method::NdfMaps, &format!("{}+{}", layered.coat, layered.base), &data, material);
+            let title = format!("{}+{}", layered.coat, layered.base);
+            let shown = self.add(Method::NdfMaps, &title, &Rc::new(data), material);
             shown.constants = methods::ndf_maps::constants(&base, Some(&coat));
         }
         for name in ndf_maps::sections::materials(pack) {
-            let baked = read(name)?;
-            let data = Rc::new(methods::ndf_maps::upload(gpu, &baked, None)?);
-            let shown = self.add(Method::NdfMaps, name, &data, ndf_material(&baked));
-            shown.constants = methods::ndf_maps::constants(&baked, None);
+            let uniform = read(name)?;
+            let data = Rc::new(methods::ndf_maps::bind(gpu, pack, name, None)?);
+            let shown = self.add(Method::NdfMaps, name, &data, ndf_material(&uniform));
+            shown.constants = methods::ndf_maps::constants(&uniform, None);
         }
         Ok(())
     }
@@ -138,14 +140,14 @@ impl Subjects {
 
     fn add_area_lights(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
         for name in area_light::sections::materials(pack) {
-            let baked = area_light::sections::from_pack(pack, name).map_err(bad)?;
+            let params = area_light::sections::params(pack, name).map_err(bad)?;
             let material = Material {
                 alpha: [0.1; 2],
-                texels_per_unit: baked.params.width as f32,
-                lobes: if baked.params.anisotropic { area_light::eval::LOBES } else { 0 },
+                texels_per_unit: params.width as f32,
+                lobes: if params.anisotropic { area_light::eval::LOBES } else { 0 },
                 ..Material::default()
             };
-            let data = Rc::new(methods::area_light::upload(gpu, &baked));
+            let data = Rc::new(bind_pack(gpu, pack, name, glint_formats::area_light::BINDINGS, params.wrap)?);
             self.add(Method::AreaLight, name, &data, material);
             self.add(Method::PlainLtc, name, &data, material);
         }
@@ -159,12 +161,11 @@ fn nothing(gpu: &Gpu) -> Rc<Resources> {
 }
 
 /// A tiny example repeats some times over the surface.
-fn ndf_material(baked: &ndf_maps::baked::Material) -> Material {
+fn ndf_material(uniform: &MaterialUniform) -> Material {
     const EXAMPLES: f32 = 16.0;
-    let params = &baked.maps.params;
     Material {
-        intrinsic_roughness: params.intrinsic_roughness,
-        texels_per_unit: EXAMPLES * params.width.max(params.height) as f32,
+        intrinsic_roughness: uniform.intrinsic_roughness,
+        texels_per_unit: EXAMPLES * uniform.size[0].max(uniform.size[1]) as f32,
         ..Material::default()
     }
 }

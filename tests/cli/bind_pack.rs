@@ -2,7 +2,7 @@
 
 use crate::support::{bake, root};
 use glam::{Vec2, Vec3};
-use glint_bake_core::dictionary::eval::{GlintMaterial, PixelOnSurface, patch_sdf};
+use glint_bake_core::dictionary::eval::{DictionaryMaterial, PixelOnSurface, patch_sdf};
 use glint_bake_core::dictionary::sections;
 use glint_formats::{Limits, Pack};
 use rand::{RngExt, SeedableRng};
@@ -26,7 +26,7 @@ fn python() -> Option<String> {
 }
 
 /// A query as `DictionaryQuery` lies in memory.
-fn bytes_of(material: &GlintMaterial, pixel: PixelOnSurface, slope: Vec2) -> Vec<u8> {
+fn bytes_of(material: &DictionaryMaterial, pixel: PixelOnSurface, slope: Vec2) -> Vec<u8> {
     let words = [
         material.alpha.x.to_bits(),
         material.alpha.y.to_bits(),
@@ -38,7 +38,7 @@ fn bytes_of(material: &GlintMaterial, pixel: PixelOnSurface, slope: Vec2) -> Vec
         pixel.d_dx.y.to_bits(),
         pixel.d_dy.x.to_bits(),
         pixel.d_dy.y.to_bits(),
-        material.target,
+        material.normal_target,
         material.density.to_bits(),
         material.relative_area.to_bits(),
         material.density_randomisation.to_bits(),
@@ -72,9 +72,9 @@ fn a_host_of_the_documentation_alone_gets_the_answers_of_the_cpu() {
     let (mut asked, mut expected) = (Vec::new(), Vec::new());
     for k in 0..QUERIES {
         let alpha = uniform(-4.0, -0.5).exp2();
-        let material = GlintMaterial {
+        let material = DictionaryMaterial {
             alpha: Vec2::new(alpha, alpha * uniform(0.5, 2.0)),
-            target: (k % 2) as u32,
+            normal_target: (k % 2) as u32,
             density: uniform(0.0, 40.0).exp2(),
             relative_area: 1.0,
             density_randomisation: uniform(0.0, 2.0),

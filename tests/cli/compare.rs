@@ -90,8 +90,8 @@ fn sections_of_one_pack_records_and_codecs_are_named() {
     assert_eq!((&section(&diff, "LAYR")["b"], &section(&diff, "PLNO")["b"]), (&Value::Null, &Value::Null));
     assert_eq!(field(&diff, "NMPP", "storage"), ("SqrtU8".into(), "F16".into()));
     assert_eq!(section(&diff, "NMDE")["differs"], value!(["codec", "resource", "payload"]));
-    let tiles = &section(&diff, "NMTI")["records"];
-    assert_eq!((&tiles["records"], &tiles["first"]), (&21.into(), &0.into()));
+    let uniform = &section(&diff, "NMUB")["records"];
+    assert_eq!((&uniform["records"], &uniform["first"]), (&1.into(), &0.into()));
 
     bake(folder.path(), &["dictionary", "--marginals", "3", "--compress", "-o", "small.glintpack"]).ok();
     let diff = differences(folder.path(), "dictionary.glintpack", "small.glintpack");

@@ -12,13 +12,13 @@ fn the_default_dictionary_verifies_and_is_described() {
     let case = case();
     let done = case.bake(&[]).ok();
     assert!(done.stdout.is_empty(), "{}", done.stdout);
-    assert!(done.stderr.contains("192 marginals × 16 levels × 64 entries, 384 KiB"), "{}", done.stderr);
+    assert!(done.stderr.contains("192 marginals × 16 levels × 64 entries, 768 KiB"), "{}", done.stderr);
     assert!(done.stderr.contains("written"), "{}", done.stderr);
     case.verify();
 
     let report = case.report();
     let dictionary = &report["dictionaries"][0];
-    assert_eq!((&dictionary["name"], &dictionary["table_bytes"]), (&"dictionary".into(), &(384 * 1024).into()));
+    assert_eq!((&dictionary["name"], &dictionary["table_bytes"]), (&"dictionary".into(), &(768 * 1024).into()));
     let measured = |name: &str| dictionary["measured"][name].as_f64().unwrap();
     assert!(measured("normalisation") <= 1e-4);
     assert!(measured("mean_l1_first_level") <= 0.03);
@@ -27,7 +27,7 @@ fn the_default_dictionary_verifies_and_is_described() {
     assert_eq!(report["provenance"][0]["options"][0], serde_json::json!(["marginals", "192"]));
 
     let text = case.info(&[]).ok().stdout;
-    for part in ["SDTB \"dictionary\"", "R16_SFLOAT 64 × 3072", "192 marginals", "α 0.5", "KS to the target 0.001"] {
+    for part in ["SDTB \"dictionary\"", "buffer", "192 marginals", "α 0.5", "KS to the target 0.001"] {
         assert!(text.contains(part), "{part} is missing from:\n{text}");
     }
 }
@@ -99,7 +99,7 @@ fn a_dry_run_checks_all_and_writes_nothing() {
     let case = case();
     let flags = ["-n", "--report", "r.json", "--depfile", "d"];
     let done = case.bake(&flags).ok();
-    assert!(done.stderr.contains("384 KiB; dry run, nothing was written"), "{}", done.stderr);
+    assert!(done.stderr.contains("768 KiB; dry run, nothing was written"), "{}", done.stderr);
     assert!(case.names().is_empty());
     assert_eq!(bake(case.folder.path(), &["dictionary", "-o", "none/out.glintpack", "-n"]).code, 3);
     assert_eq!(case.bake(&["--report", "out.glintpack"]).code, 2);

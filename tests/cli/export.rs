@@ -167,8 +167,8 @@ fn sections_and_names_select_files() {
         (names, sidecar["parameters"].as_array().unwrap().len())
     };
     assert_eq!(export(&["--section", "PLNO"]), (vec!["PLNO-flakes.dds".into(), "PLNO-scratches.dds".into()], 5));
-    let (names, parameters) = export(&["--section", "PLNO", "--section", "NMTI", "--name", "flakes"]);
-    assert_eq!((names, parameters), (vec!["NMTI-flakes.bin".into(), "PLNO-flakes.dds".into()], 2));
+    let (names, parameters) = export(&["--section", "PLNO", "--section", "NMUB", "--name", "flakes"]);
+    assert_eq!((names, parameters), (vec!["NMUB-flakes.bin".into(), "PLNO-flakes.dds".into()], 2));
 }
 
 #[test]

@@ -105,7 +105,7 @@ fn what_cannot_work_is_refused_by_the_name_of_its_flag() {
         (&["--patch", "32"], 2, "--synthesize"),
         (&["--synthesize", "200x100", "--patch", "40"], 2, "--patch"),
         (&["--synthesize", "200x100", "--patch", "0"], 2, "--patch"),
-        (&["--synthesize", "200x100", "--patch", "128"], 4, "--patch"),
+        (&["--synthesize", "200x100", "--patch", "128"], 4, "a smaller patch"),
         (&["--synthesize", "unbounded", "--patch", "48", "--write-normal-map", "a.png"], 2, "--normal-map-size"),
     ] {
         base.refuses(flags, code, named);

@@ -6,7 +6,7 @@ use crate::crates::{Crate, all, root};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use syn::visit::{self, Visit};
-use syn::{File, ItemMod, ItemUse, Path, UseTree};
+use syn::{File, Item, ItemMod, ItemUse, Path, UseTree};
 
 /// Module paths that a file names.
 struct Names<'a> {
@@ -150,6 +150,19 @@ fn no_two_modules_import_each_other() {
         }
     }
     assert!(problems.is_empty(), "{problems}");
+}
+
+#[test]
+fn every_file_is_a_module_of_its_crate() {
+    for of in all() {
+        for (module, path) in &of.files {
+            let Some((name, parent)) = module.split_last() else { continue };
+            let parent = of.files.get(parent).unwrap_or_else(|| panic!("{} is in no module", path.display()));
+            let file = syn::parse_file(&fs::read_to_string(parent).unwrap()).unwrap();
+            let declares = file.items.iter().any(|item| matches!(item, Item::Mod(module) if module.ident == name));
+            assert!(declares, "{} is not declared in {}", path.display(), parent.display());
+        }
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 // Rectangle lights on normal-mapped surfaces: mean normal and roughness of what lies under a pixel, and its lobes.
 // Tao et al. 2021, "Real-Time Antialiased Area Lighting Using Multi-Scale Linearly Transformed Cosines", sections 3.1, 3.3
-// and 3.5. Twin of glint-bake-core area_light/{fetch,eval}.rs, where deviations from the paper are derived; mainly: the
+// and 3.5. Twin of eval.rs, where deviations from the paper are derived; mainly: the
 // roughness of normals is stored by itself, convolution is symmetric, and normals that vary more along one direction are
 // taken apart into lobes.
 //
@@ -24,7 +24,7 @@ const GLINT_INV_CODE_POWER: f32 = 0.71428573;
 const GLINT_CONVOLVE_FIRST: f32 = 0.3355;
 const GLINT_CONVOLVE_SECOND: f32 = 0.0255;
 
-// Shape of the textures, from the section ALPP.
+// Shape of the textures: section ALUB.
 struct GlintAreaLightMaps {
     // Width and height of the first mip, in texels.
     size: vec2f,
@@ -33,6 +33,9 @@ struct GlintAreaLightMaps {
     wrap: u32,
     // 1 where there is roughness by direction.
     anisotropic: u32,
+    unused_0: u32,
+    unused_1: u32,
+    unused_2: u32,
 }
 
 // What lies under a pixel.
@@ -40,7 +43,7 @@ struct GlintAreaLightSurface {
     // Mean normal, unit.
     normal: vec3f,
     // Length of the mean normal before it was made a unit vector.
-    size: f32,
+    length: f32,
     // Meso roughness alpha, the same in all directions.
     alpha: f32,
     // Meso roughness by direction; `alpha` in all directions where none was asked for or the material is isotropic.
@@ -118,7 +121,7 @@ fn glint_alpha_of_code(code: f32) -> f32 {
 }
 
 // Larger and smaller eigenvalue of xx, xy, yy, 0 to 1, and the direction of the larger.
-fn glint_principal(matrix: vec3f) -> GlintRoughness {
+fn glint_area_light_principal(matrix: vec3f) -> GlintRoughness {
     let middle = 0.5 * (matrix.x + matrix.z);
     let half = 0.5 * (matrix.x - matrix.z);
     let gap = sqrt(half * half + matrix.y * matrix.y);
@@ -178,7 +181,7 @@ fn glint_area_light_fetch(
     let alpha = glint_alpha_of_code(mean.w) * fade;
     var by_direction = GlintRoughness(alpha, alpha, vec2f(1.0, 0.0));
     if directional && maps.anisotropic != 0u {
-        let code = glint_principal(glint_area_light_roughness(place, level).xyz);
+        let code = glint_area_light_principal(glint_area_light_roughness(place, level).xyz);
         by_direction =
             GlintRoughness(glint_alpha_of_code(code.major) * fade, glint_alpha_of_code(code.minor) * fade, code.axis);
     }

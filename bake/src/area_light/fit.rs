@@ -1,4 +1,4 @@
-//! Fits one linearly transformed cosine to GGX for one view and roughness.
+//! The LTC tables: one linearly transformed cosine fitted to GGX for each view and roughness.
 //!
 //! Heitz et al. 2016, sections 3 and 5; five entries of M⁻¹ as in Heitz and Hill 2016, divided by the middle one.
 //! Deviations from the authors' fitter, which moves three entries of M by a simplex search on an L3 error:
@@ -6,10 +6,100 @@
 //! - first the Hellinger distance ∫ (√g − √f)² is made least, which is smooth, then the L1 distance by reweighting;
 //! - one fixed set of stratified directions, drawn from the visible normals, serves all steps. GGX and its masking are
 //!   symmetric about the plane of incidence, so half of the disk is enough.
+//!
+//! Texel (i, j) of [`SIZE`]² stands for roughness α = (i / 63)² and view cosine 1 − (j / 63)². The first table holds a, c, b, d
+//! of M⁻¹ = [[a, 0, b], [0, 1, 0], [c, 0, d]] (column by column), the second magnitude, Fresnel term, 0, and the clipped form
+//! factor of a sphere.
+//!
+//! GGX is that of Walter et al. 2007 (D) with the masking of Heitz 2014 (Λ), sampled by its visible normals (Heitz 2018), in the
+//! tangent frame. Only square roots and the four operations, so that fits have the same bits everywhere.
 
-use super::ggx;
+use super::baked::{LtcTables, SIZE};
 use glam::{DMat3, DVec2, DVec3};
+use half::f16;
+use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_PI, PI};
+
+/// Least roughness that is fitted; row 0 stands for it.
+pub const MIN_ALPHA: f64 = 1e-5;
+/// Least view cosine that is fitted; the last row stands for it.
+pub const MIN_COSINE: f64 = 1e-3;
+
+/// Roughness of column i.
+pub fn alpha_of(i: usize) -> f64 {
+    let x = i as f64 / (SIZE - 1) as f64;
+    (x * x).max(MIN_ALPHA)
+}
+
+/// View cosine of row j.
+pub fn cosine_of(j: usize) -> f64 {
+    let y = j as f64 / (SIZE - 1) as f64;
+    (1.0 - y * y).max(MIN_COSINE)
+}
+
+/// Fits all entries. The same bits on every platform and for any number of threads.
+pub fn fit_tables() -> LtcTables {
+    let coarse = DiskSet::new(24, 16);
+    // Many rings: lights below the horizon begin somewhere in the tail, and the magnitude is what lies before.
+    let fine = DiskSet::new(384, 24);
+    let columns: Vec<Vec<[[u16; 4]; 2]>> =
+        (0..SIZE).into_par_iter().map(|i| fit_column(alpha_of(i), &coarse, &fine)).collect();
+    let mut tables = LtcTables { inverse: Vec::new(), terms: Vec::new() };
+    for j in 0..SIZE {
+        for i in 0..SIZE {
+            let [inverse, mut terms] = columns[i][j];
+            terms[3] = half(clipped_sphere(i as f64 / (SIZE - 1) as f64 * 2.0 - 1.0, j as f64 / (SIZE - 1) as f64));
+            tables.inverse.push(inverse);
+            tables.terms.push(terms);
+        }
+    }
+    tables
+}
+
+/// All view cosines of one roughness, each from the fit before.
+fn fit_column(alpha: f64, coarse: &DiskSet, fine: &DiskSet) -> Vec<[[u16; 4]; 2]> {
+    let mut shape = DMat3::from_diagonal(DVec3::new(1.0, 1.0, 2.0 * alpha));
+    let mut column = Vec::with_capacity(SIZE);
+    for j in 0..SIZE {
+        let cosine = cosine_of(j);
+        let (inverse, next) = fit(&Target::new(cosine, alpha, coarse), shape, j == 0);
+        shape = next;
+        let exact = Target::new(cosine, alpha, fine);
+        let [a, b, c, d] = inverse.entries;
+        column.push([[half(a), half(c), half(b), half(d)], [half(exact.magnitude), half(exact.fresnel), 0, 0]]);
+    }
+    column
+}
+
+fn half(value: f64) -> u16 {
+    f16::from_f32(value as f32).to_bits()
+}
+
+/// Form factor of a sphere cut by the horizon, over that of the whole one: `cosine` of its centre, and its unclipped
+/// form factor seen head-on, sin² of its angular radius.
+///
+/// Lambert's formula for the part of the cap's edge above the horizon, from −φ₀ to φ₀, and the arc of the horizon that
+/// closes it: F = (φ₀ z sin²σ − sinσ cosσ √(1−z²) sinφ₀ + ψ₀) / π.
+pub fn clipped_sphere(cosine: f64, form_factor: f64) -> f64 {
+    let z = cosine.clamp(-1.0, 1.0);
+    let form_factor = form_factor.clamp(1e-6, 1.0);
+    let sin = form_factor.sqrt();
+    let cos = (1.0 - form_factor).max(0.0).sqrt();
+    let w = (1.0 - z * z).max(0.0).sqrt();
+    let edge = cos * z;
+    if edge >= sin * w && z > 0.0 {
+        return z;
+    }
+    if -edge >= sin * w {
+        return 0.0;
+    }
+    let cos_phi = (-edge / (sin * w)).clamp(-1.0, 1.0);
+    let phi = libm::acos(cos_phi);
+    let sin_phi = (1.0 - cos_phi * cos_phi).max(0.0).sqrt();
+    let psi = libm::atan2(sin * sin_phi, cos * w - sin * cos_phi * z);
+    let found = (phi * z * form_factor - sin * cos * w * sin_phi + psi) / PI;
+    (found / form_factor).clamp(0.0, 1.0)
+}
 
 /// M⁻¹ = [[a, 0, b], [0, 1, 0], [c, 0, d]] in the plane of incidence: x towards the viewer, z the normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,15 +191,15 @@ impl Target {
             mean: DVec3::ZERO,
         };
         for &point in &set.points {
-            let half = ggx::visible_normal(view, alpha, point);
+            let half = visible_normal(view, alpha, point);
             let cosine = view.dot(half);
             let light = 2.0 * cosine * half - view;
-            let density = ggx::visible_density(view, half, alpha);
+            let density = visible_density(view, half, alpha);
             if !(cosine > 0.0 && density > 0.0) {
                 continue;
             }
             let weight = 1.0 / (count * density);
-            let value = ggx::brdf_cosine(view, light, alpha);
+            let value = brdf_cosine(view, light, alpha);
             let share = weight * value;
             target.magnitude += share;
             let c = 1.0 - cosine;
@@ -258,4 +348,48 @@ fn solve(mut n: [[f64; 4]; 4], mut g: [f64; 4], damping: f64) -> [f64; 4] {
         g[i] /= n[i][i];
     }
     g
+}
+
+/// Λ of Smith's masking for a direction of cosine `z` over a surface of roughness α.
+pub fn lambda(z: f64, alpha: f64) -> f64 {
+    let z2 = z * z;
+    let tan2 = (1.0 - z2).max(0.0) / z2;
+    let a2t2 = alpha * alpha * tan2;
+    // ½ (√(1 + x) − 1) without cancellation.
+    0.5 * a2t2 / (1.0 + (1.0 + a2t2).sqrt())
+}
+
+/// BRDF without Fresnel factor, times the cosine of the light; 0 unless both directions are above the surface.
+pub fn brdf_cosine(view: DVec3, light: DVec3, alpha: f64) -> f64 {
+    if !(view.z > 0.0 && light.z > 0.0) {
+        return 0.0;
+    }
+    let half = (view + light).normalize();
+    let g2 = 1.0 / (1.0 + lambda(view.z, alpha) + lambda(light.z, alpha));
+    distribution(half, alpha) * g2 / (4.0 * view.z)
+}
+
+/// D of a half vector above the surface.
+pub fn distribution(half: DVec3, alpha: f64) -> f64 {
+    let a2 = alpha * alpha;
+    let t = half.z * half.z + (half.x * half.x + half.y * half.y) / a2;
+    1.0 / (PI * a2 * t * t)
+}
+
+/// Visible normal for a point of the unit disk (Heitz 2018); its density over light directions is
+/// [`visible_density`].
+pub fn visible_normal(view: DVec3, alpha: f64, disk: DVec2) -> DVec3 {
+    let stretched = DVec3::new(alpha * view.x, alpha * view.y, view.z).normalize();
+    let across = if stretched.z < 1.0 { DVec3::new(-stretched.y, stretched.x, 0.0).normalize() } else { DVec3::Y };
+    let along = stretched.cross(across);
+    let s = 0.5 * (1.0 + stretched.z);
+    let y = (1.0 - s) * (1.0 - disk.x * disk.x).max(0.0).sqrt() + s * disk.y;
+    let up = (1.0 - disk.x * disk.x - y * y).max(0.0).sqrt();
+    let normal = across * disk.x + along * y + stretched * up;
+    DVec3::new(alpha * normal.x, alpha * normal.y, normal.z.max(0.0)).normalize()
+}
+
+/// Density, over solid angle of the light, of reflections about visible normals: G₁ D / (4 v·n).
+pub fn visible_density(view: DVec3, half: DVec3, alpha: f64) -> f64 {
+    distribution(half, alpha) / ((1.0 + lambda(view.z, alpha)) * 4.0 * view.z)
 }

@@ -2,39 +2,31 @@
 //! them, at any distance.
 //!
 //! Method: Tao et al. 2021, "Real-Time Antialiased Area Lighting Using Multi-Scale Linearly Transformed Cosines". A mip
-//! chain holds averaged normals and the roughness of what was averaged ([`mips`], [`spread`]). At run time that roughness
-//! is convolved with the surface's own ([`convolve`]), and a rectangle light is integrated in closed form ([`rect`])
-//! against the linearly transformed cosine that stands for GGX of that roughness ([`tables`], [`fit`], [`eval`]).
-//! [`reference`] says the same from the definitions in f64; [`quality`] measures one by the other.
+//! chain holds averaged normals and the roughness of what was averaged ([`bake()`], [`spread`]). At run time that roughness
+//! is convolved with the surface's own ([`eval`]), and a rectangle light is integrated in closed form ([`rect`]) against the
+//! linearly transformed cosine that stands for GGX of that roughness ([`fit`]). [`reference`] says the same from the definitions
+//! in f64; [`quality`] measures one by the other; [`paper`] has the paper's own fits, for comparison.
 //!
 //! What deviates from the paper, and why, stands on top of each file and in `docs/methods/area-light.md`. The main points:
-//! - the mean resultant length has a closed form, which is inverted exactly ([`resultant`]);
+//! - the mean resultant length has a closed form, which is inverted exactly ([`spread`]);
 //! - the roughness of normals is matched where a highlight sees it, not by the length alone ([`spread`]);
 //! - normals may vary more along one direction than across: a few lobes along it share the light ([`eval`]);
-//! - convolution is symmetric, and exact when one roughness is 0 ([`convolve`]).
+//! - convolution is symmetric, and exact when one roughness is 0 ([`spread`]).
 
-mod bake;
-pub mod baseline;
-pub mod convolve;
+pub mod bake;
+pub mod baked;
 pub mod eval;
-pub mod fetch;
 pub mod fit;
-pub mod ggx;
-pub mod kernel;
-pub mod material;
-pub mod mips;
 pub mod options;
+pub mod paper;
 pub mod quality;
 pub mod rect;
 pub mod reference;
-pub mod reference_lobes;
-pub mod resultant;
 pub mod sections;
 pub mod spread;
-pub mod tables;
 
 crate::shader::shaders!("area_light": "rect", "eval");
 
 pub use bake::{bake, pack};
-pub use material::AreaLightMaterial;
+pub use baked::AreaLightMaterial;
 pub use options::AreaLightOptions;

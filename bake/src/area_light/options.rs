@@ -17,11 +17,19 @@ pub struct AreaLightOptions {
     pub storage: NormalStorage,
     /// So many of the finest mips are left out, for maps that are never seen closer. The last mip always stays.
     pub skip_mips: u32,
+    /// Bytes that the bake may hold meanwhile.
+    pub max_memory: u64,
 }
 
 impl Default for AreaLightOptions {
     fn default() -> AreaLightOptions {
-        AreaLightOptions { base_roughness: 0.1, anisotropic: false, storage: NormalStorage::F16, skip_mips: 0 }
+        AreaLightOptions {
+            base_roughness: 0.1,
+            anisotropic: false,
+            storage: NormalStorage::F16,
+            skip_mips: 0,
+            max_memory: u64::MAX,
+        }
     }
 }
 
@@ -35,6 +43,6 @@ impl AreaLightOptions {
         if (low..=high).contains(&self.base_roughness) {
             return Ok(());
         }
-        Err(BakeError::BadOption(format!("--base-roughness: expected {low} to {high}, found {}", self.base_roughness)))
+        Err(BakeError::BadOption(format!("base-roughness: expected {low} to {high}, found {}", self.base_roughness)))
     }
 }

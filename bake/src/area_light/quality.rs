@@ -1,11 +1,11 @@
 //! How good the tables are, and how near highlights come to the reference, over distance.
 
-use super::baseline::paper_alpha;
-use super::eval::{RectLight, Tables, alpha_from_deficit, convolve_alpha, isotropic_radiance, surface_radiance};
-use super::fetch::{Maps, fetch};
-use super::fit::{DiskSet, Inverse, Target};
+use super::baked::{LtcTables, Maps, SIZE, Tables};
+use super::eval::{alpha_from_deficit, convolve_alpha, fetch, surface_radiance};
+use super::fit::{DiskSet, Inverse, Target, alpha_of, cosine_of};
+use super::paper::paper_alpha;
+use super::rect::{RectLight, isotropic_radiance};
 use super::reference::{Scene, facet_radiance, footprint_normals, lift};
-use super::tables::{LtcTables, SIZE, alpha_of, cosine_of};
 use crate::footprint::Footprint;
 use crate::normal_map::NormalMap;
 use crate::quality::metrics::Summary;

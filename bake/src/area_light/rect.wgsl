@@ -1,6 +1,6 @@
 // A rectangle light on one GGX lobe: linearly transformed cosines.
 // Heitz et al. 2016, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines"; Tao et al. 2021, section 3.1.
-// Twin of glint-bake-core area_light/{rect,eval}.rs, where deviations are derived: edges are cut at the horizon one by one,
+// Twin of rect.rs, where deviations are derived: edges are cut at the horizon one by one,
 // the angle of an edge is exact, and a lobe that is longer along one direction has its cosine stretched.
 //
 // Vectors are relative to the shaded point, in the tangent frame of the surface. Radiance and reflectance are linear RGB.
@@ -77,7 +77,7 @@ fn glint_direction(v: vec3f) -> vec3f {
     return scaled / length(scaled);
 }
 
-// A part of an outline: what its edge adds, and where it crosses the horizon.
+// The part of an outline above the horizon: what its edges add, and where it goes below and comes up again.
 struct GlintCutEdge {
     form_factor: f32,
     down: vec3f,

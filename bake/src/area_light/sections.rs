@@ -1,10 +1,11 @@
 //! A material as sections of a pack, and back.
 
-use super::material::AreaLightMaterial;
-use super::tables::{LtcTables, SIZE};
+use super::baked::{AreaLightMaterial, LtcTables, SIZE};
 use crate::error::{BakeError, Result};
 use crate::pack_access::{bytes, names_with, parameters};
-use glint_formats::area_light::{AreaLightParams, INVERSE, NORMALS, PARAMS, ROUGHNESS, TABLE_VK_FORMAT, TERMS};
+use glint_formats::area_light::{
+    AreaLightParams, INVERSE, NORMALS, PARAMS, ROUGHNESS, TABLE_VK_FORMAT, TERMS, UNIFORM,
+};
 use glint_formats::container::full_mip_count;
 use glint_formats::{Codec, FourCc, Pack, Resource, Section};
 
@@ -16,8 +17,11 @@ pub fn to_sections(name: &str, material: &AreaLightMaterial, codec: Codec) -> Ve
         |vk_format, width, height, mips| Resource::Texture { vk_format, width, height, layers: 1, faces: 1, mips };
     let map = texture(params.storage.vk_format(), width, height, full_mip_count(width, height));
     let table = texture(TABLE_VK_FORMAT, SIZE as u32, SIZE as u32, 1);
-    let mut sections =
-        vec![Section::parameters(PARAMS, name, params), Section::texture(NORMALS, name, map, material.normals.clone())];
+    let mut sections = vec![
+        Section::parameters(PARAMS, name, params),
+        Section::buffer(UNIFORM, name, &[params.uniform()]),
+        Section::texture(NORMALS, name, map, material.normals.clone()),
+    ];
     if params.anisotropic {
         sections.push(Section::texture(ROUGHNESS, name, map, material.roughness.clone()));
     }
@@ -31,9 +35,17 @@ pub fn to_sections(name: &str, material: &AreaLightMaterial, codec: Codec) -> Ve
     sections
 }
 
+/// Reads the parameters of the material `name`.
+///
+/// # Errors
+/// `BadInput` where there are none, or they are damaged.
+pub fn params(pack: &Pack, name: &str) -> Result<AreaLightParams> {
+    parameters(pack, PARAMS, name)
+}
+
 /// Reads the material `name`. The pack must have passed verification; errors name what is missing or damaged.
 pub fn from_pack(pack: &Pack, name: &str) -> Result<AreaLightMaterial> {
-    let params: AreaLightParams = parameters(pack, PARAMS, name)?;
+    let params = params(pack, name)?;
     let texels: usize = (0..full_mip_count(params.width, params.height))
         .map(|mip| (params.width >> mip).max(1) as usize * (params.height >> mip).max(1) as usize)
         .sum();
@@ -81,7 +93,7 @@ mod tests {
             [(false, NormalStorage::F16, Codec::None), (true, NormalStorage::Snorm8, Codec::Zstd)]
         {
             let options = AreaLightOptions { anisotropic, storage, ..AreaLightOptions::default() };
-            let material = bake(&map, &options, 1 << 30, &Silent).unwrap();
+            let material = bake(&map, &options, &Silent).unwrap();
             let mut builder = PackBuilder::new();
             for section in to_sections("metal", &material, codec) {
                 builder.push(section).unwrap();

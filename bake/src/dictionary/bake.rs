@@ -8,14 +8,17 @@
 //! - Up to 2^[`EXACT_LEVEL`] lobes are added one by one, exactly, at the bin centres. Above, lobes are counted in
 //!   sub-bins of at most a sixth of a lobe's standard deviation, and each level is one convolution of the counts. The
 //!   authors sum every lobe of every level anew.
+//! - Lobe k of all marginals is drawn together, see [`Draws`], and tables are rounded so that they stay normalised, see
+//!   [`to_half_with_sum`].
 //! - Counts are integers and sums run in one fixed order with portable functions, so a dictionary has the same bytes on
 //!   every platform. The work is a few hundredths of a second, so it stays on one thread.
 
-use super::draws::Draws;
+use super::baked::Dictionary;
 use super::options::DictionaryOptions;
-use super::round::to_half_with_sum;
-use super::tables::Dictionary;
-use crate::error::Result;
+use crate::error::BakeError;
+use crate::progress::Progress;
+use rand::Rng;
+use rand_pcg::Pcg32;
 use std::ops::AddAssign;
 
 /// Last level whose lobes are summed one by one.
@@ -28,26 +31,28 @@ const BLOCK: usize = 32;
 /// A lobe ends at this many standard deviations (what is beyond is 2e-9 of it).
 const LOBE_REACH: f64 = 6.0;
 
-/// Bakes a dictionary.
+/// Bakes a dictionary, which has no input but its options. One stage of progress, of a step a level.
 ///
 /// # Errors
 /// Those of [`DictionaryOptions::validate`].
-pub fn bake(options: &DictionaryOptions) -> Result<Dictionary> {
+pub fn bake(options: &DictionaryOptions, progress: &dyn Progress) -> Result<Dictionary, BakeError> {
     options.validate()?;
+    progress.begin("levels", u64::from(options.levels));
     let quantiles = MeanQuantiles::new(options);
     let mut bits = vec![0u16; options.tables() as usize * options.entries as usize];
-    bake_exact(options, &quantiles, &mut bits);
+    bake_exact(options, &quantiles, progress, &mut bits);
     // Counts below 2^16 take half the memory of the whole bake.
     if options.levels <= u16::BITS {
-        bake_counted::<u16>(options, &quantiles, &mut bits);
+        bake_counted::<u16>(options, &quantiles, progress, &mut bits);
     } else {
-        bake_counted::<u32>(options, &quantiles, &mut bits);
+        bake_counted::<u32>(options, &quantiles, progress, &mut bits);
     }
+    progress.end();
     Ok(Dictionary { options: *options, bits })
 }
 
 /// Levels up to [`EXACT_LEVEL`]: lobe by lobe.
-fn bake_exact(options: &DictionaryOptions, quantiles: &MeanQuantiles, bits: &mut [u16]) {
+fn bake_exact(options: &DictionaryOptions, quantiles: &MeanQuantiles, progress: &dyn Progress, bits: &mut [u16]) {
     let n = options.marginals as usize;
     let entries = options.entries as usize;
     let mut draws = Draws::new(options.seed, options.marginals);
@@ -66,6 +71,7 @@ fn bake_exact(options: &DictionaryOptions, quantiles: &MeanQuantiles, bits: &mut
             table.copy_from_slice(&sums[i * entries..][..entries]);
             store(options, level, i, &mut table, bits);
         }
+        progress.advance(1);
     }
 }
 
@@ -75,7 +81,12 @@ impl Count for u16 {}
 impl Count for u32 {}
 
 /// Levels above [`EXACT_LEVEL`]: counts in sub-bins, and a convolution a level.
-fn bake_counted<C: Count>(options: &DictionaryOptions, quantiles: &MeanQuantiles, bits: &mut [u16]) {
+fn bake_counted<C: Count>(
+    options: &DictionaryOptions,
+    quantiles: &MeanQuantiles,
+    progress: &dyn Progress,
+    bits: &mut [u16],
+) {
     if options.levels <= EXACT_LEVEL + 1 {
         return;
     }
@@ -109,6 +120,7 @@ fn bake_counted<C: Count>(options: &DictionaryOptions, quantiles: &MeanQuantiles
             kernel.convolve(&counts[i * sub_bins..][..sub_bins], &mut spread, &mut table);
             store(options, level, i, &mut table, bits);
         }
+        progress.advance(1);
     }
 }
 
@@ -297,4 +309,146 @@ impl Kernel {
             }
         }
     }
+}
+
+/// First lobe that is drawn in pairs; even.
+pub const PAIRED_FROM: u32 = 1024;
+const HALF_TURN: u32 = 1 << 31;
+
+/// The random numbers that a dictionary stands for, one lobe after the other: one uniform number a lobe and marginal,
+/// stratified across marginals. The bake and the reference share them; each turns them into slopes in its own way.
+///
+/// Paper: section 4.4 draws lobe means one by one and independently. Deviation: lobe k of all N marginals is one Latin
+/// hypercube, a random order of the N strata of [0, 1) with a random place in each. A single marginal still sees
+/// independent uniform numbers, so its glints stay; the mean over the dictionary converges far faster.
+///
+/// From lobe [`PAIRED_FROM`] on, lobes come in pairs half a turn apart (u and u + ½ mod 1). It halves the work where
+/// nearly all lobes are, and takes the lowest frequency out of a marginal's deviation from the target. Lobes below it
+/// are independent within a marginal: there pairs would be seen as missing glints.
+#[derive(Clone, Debug)]
+pub struct Draws {
+    seed: u64,
+    order: Vec<u32>,
+    uniform: Vec<u32>,
+    drawn: Option<u32>,
+}
+
+impl Draws {
+    /// Draws for a dictionary of `marginals` marginals, at least 1.
+    pub fn new(seed: u64, marginals: u32) -> Draws {
+        let n = marginals as usize;
+        Draws { seed, order: vec![0; n], uniform: vec![0; n], drawn: None }
+    }
+
+    /// Uniform numbers of lobe `lobe`, in units of 2^−32, one a marginal. One generator stream a lobe or pair of lobes,
+    /// so any lobe can be drawn alone; asking for the second of a pair after the first costs nothing new.
+    pub fn lobe(&mut self, lobe: u32) -> &[u32] {
+        if self.drawn == Some(lobe) {
+            return &self.uniform;
+        }
+        if lobe < PAIRED_FROM || lobe.is_multiple_of(2) {
+            self.draw(lobe);
+        } else {
+            if self.drawn != Some(lobe - 1) {
+                self.draw(lobe - 1);
+            }
+            for u in &mut self.uniform {
+                *u = u.wrapping_add(HALF_TURN);
+            }
+        }
+        self.drawn = Some(lobe);
+        &self.uniform
+    }
+
+    fn draw(&mut self, item: u32) {
+        let mut rng = Pcg32::new(stream_state(self.seed, item), u64::from(item));
+        let n = self.order.len() as u64;
+        for j in 0..self.order.len() {
+            let r = ((u64::from(rng.next_u32()) * (j as u64 + 1)) >> 32) as usize;
+            self.order[j] = self.order[r];
+            self.order[r] = j as u32;
+        }
+        let width = (1u64 << 32) / n;
+        for i in 0..self.order.len() {
+            let within = (u64::from(rng.next_u32()) * width) >> 32;
+            self.uniform[i] = (u64::from(self.order[i]) * width + within) as u32;
+        }
+    }
+}
+
+/// First state of an item's generator. Streams of a linear congruential generator that start from related states stay
+/// related, which shows as contrast that grows with the number of lobes, so seed and item are mixed well first.
+fn stream_state(seed: u64, item: u32) -> u64 {
+    let mut s = seed ^ (u64::from(item) << 32 | u64::from(item));
+    for factor in [0x9e37_79b9_7f4a_7c15u64, 0xbb67_ae85_84ca_a73b, 0xa54f_f53a_5f1d_36f1] {
+        s = (s ^ (s >> 32)).wrapping_add(factor).wrapping_mul(factor);
+    }
+    s ^ (s >> 32)
+}
+
+/// Largest number of one-unit steps for one table.
+const MAX_STEPS: u32 = 64;
+
+/// A sum this near to the wished one, relative to it, is left alone.
+const CLOSE_ENOUGH: f64 = 1e-7;
+
+/// Rounds `values` (non-negative, finite, below 65 504) to half floats whose sum is within [`CLOSE_ENOUGH`] of
+/// `sum`, or as near to it as single steps in the last place can bring it. The bits go to `out`, which has the same length.
+///
+/// The paper's tables were normalised before rounding and for other sample places than the sampler uses. Here the sum
+/// of the rounded entries is put right last. Each step moves one entry by one unit in its last place, the entry whose
+/// step brings the sum nearest to the target, so a few steps of falling size are enough; among equal steps it takes
+/// the entry that rounding had moved the other way the most. Zero entries stay zero.
+pub fn to_half_with_sum(values: &[f64], sum: f64, out: &mut [u16]) {
+    let mut errors = Vec::with_capacity(values.len());
+    let mut missing = sum;
+    for b in 0..values.len() {
+        let (bits, rounded) = nearest_half(values[b]);
+        out[b] = bits;
+        errors.push(rounded - values[b]);
+        missing -= rounded;
+    }
+    for _ in 0..MAX_STEPS {
+        if missing.abs() <= CLOSE_ENOUGH * sum {
+            return;
+        }
+        let up = missing > 0.0;
+        let mut best = (missing.abs(), 0.0);
+        let mut chosen = None;
+        for b in 0..values.len() {
+            if out[b] == 0 {
+                continue;
+            }
+            let unit = last_place(if up { out[b] } else { out[b] - 1 });
+            let step = if up { unit } else { -unit };
+            let left = (missing - step).abs();
+            let error = (errors[b] + step).abs() / unit;
+            if left < best.0 || (left == best.0 && chosen.is_some() && error < best.1) {
+                best = (left, error);
+                chosen = Some((b, step));
+            }
+        }
+        let Some((b, step)) = chosen else { return };
+        out[b] = if up { out[b] + 1 } else { out[b] - 1 };
+        errors[b] += step;
+        missing -= step;
+    }
+}
+
+/// Distance from a positive half float, given by its bits, to the next larger one.
+fn last_place(bits: u16) -> f64 {
+    let exponent = u64::from(bits >> 10).max(1);
+    f64::from_bits((1023 - 25 + exponent) << 52)
+}
+
+/// Nearest half float of a non-negative finite number below 65 504, ties to even: its bits and its value. Written out because
+/// `half` goes through f32 where the processor can convert f32 but not f64, and rounding twice would give other bytes there.
+fn nearest_half(value: f64) -> (u16, f64) {
+    let power = (value.to_bits() >> 52) as i64 - 1023;
+    let exponent = (power + 15).max(1) as u64;
+    let unit = f64::from_bits((1023 - 25 + exponent) << 52);
+    let units = (value / unit).round_ties_even();
+    // A subnormal has exponent field 0 and up to 1 024 units; a normal one has 1 024 to 2 048, and 2 048 carries.
+    let bits = if power + 15 < 1 { units as u64 } else { (exponent << 10) + units as u64 - 1024 };
+    (bits as u16, units * unit)
 }

@@ -1,6 +1,6 @@
-//! Slope distribution of a pixel at run time. f32, plain functions, as in WGSL.
+//! Slope distribution and BRDF of a pixel at run time. f32, plain functions, as in WGSL.
 //!
-//! Paper: sections 5 and 6.1, Eq. 7 to 12, algorithms 2 and 3. Deviations:
+//! Paper: sections 5 and 6, Eq. 7 to 16, algorithms 1 to 3. Deviations:
 //! - Order of the transforms: the half vector's slope is first scaled, then rotated. Scaling last (as algorithm 3
 //!   prints it) converges to a rotated target when α_x ≠ α_y; this order converges to the target.
 //! - GGX. The radial map r_B = α √ln(1 + r²/α²) takes the circle that holds a given share of GGX to the circle that
@@ -14,12 +14,20 @@
 //! - A cell is turned by at most 45°, not by any angle. Marginals are even and both are picked alike, so a quarter turn only
 //!   exchanges the two, and the distribution over cells is the same.
 //! - Density randomisation takes its normal number from two uniform ones, so its tails are bounded.
+//! - The weight of a cell is (1 − r²)² inside the footprint's ellipse, within 0.04 of (exp(−2 r²) − exp(−2)) / (1 − exp(−2));
+//!   the paper has exp(−2 r²) inside r = 1. A cell enters and leaves with weight zero, and slowly.
+//! - At each level the footprint is widened by a Gaussian of 0.4 cells (Heckbert's reconstruction filter). Every
+//!   footprint, of zero area too, then covers a cell centre, and magnified cells blend.
+//! - Rows of cells and the span of each row come from the ellipse, so each cell inside is visited once and none outside.
+//!   The authors walk the bounding box and stop after 100 cells, which loses weight. The number of cells is bounded by
+//!   the clamped anisotropy alone, see [`super::quality::max_cells`].
+//!
+//! Lengths are in cells of level 0; one surface unit has 2^(levels − 1) of them a side.
 
-use super::cells::{MAX_CELL_LEVEL, PixelFootprint, cell_weight, level_window, pixel_footprint, row_span};
-use super::tables::Tables;
+use super::baked::Tables;
 use crate::brdf::{facet_brdf, half_vector, normal_to_slope, sdf_to_ndf};
 use crate::hash::{CellState, cell_state_in_row, draw_bits, draw_uniform, row_key};
-use glam::{Vec2, Vec3};
+use glam::{IVec2, Vec2, Vec3};
 
 /// Target: Beckmann.
 pub const TARGET_BECKMANN: u32 = 0;
@@ -31,21 +39,27 @@ const DRAW_COVERAGE: u32 = 0;
 const DRAW_DENSITY_RADIUS: u32 = 1;
 const DRAW_DENSITY_ANGLE: u32 = 2;
 const DRAW_COLOUR: u32 = 3;
+/// Coarsest level of the cell hierarchy. A minor radius beyond 2^`MAX_CELL_LEVEL` cells counts as that long.
+pub const MAX_CELL_LEVEL: u32 = 24;
+/// Largest ratio of the axes that can be asked for.
+pub const MAX_ANISOTROPY: f32 = 16.0;
+/// Squared radius, in cells, that the reconstruction filter adds: (2 · 0.4)².
+pub const RECONSTRUCTION_RADIUS2: f32 = 0.64;
 
 /// What a material asks for.
 #[derive(Clone, Debug, PartialEq)]
-pub struct GlintMaterial {
+pub struct DictionaryMaterial {
     /// Roughness α_x, α_y along the tangent axes, 1e-3 to 1 (larger works too).
     pub alpha: Vec2,
     /// [`TARGET_BECKMANN`] or [`TARGET_GGX`].
-    pub target: u32,
+    pub normal_target: u32,
     /// Facets ρ on one unit of surface area, 0 to 1e16 and beyond.
     pub density: f32,
     /// Share β of the surface that glints, 0 to 1.
     pub relative_area: f32,
     /// Density randomisation ζ: standard deviation of a cell's level.
     pub density_randomisation: f32,
-    /// Largest ratio γ of the footprint's axes, 1 to [`super::cells::MAX_ANISOTROPY`].
+    /// Largest ratio γ of the footprint's axes, 1 to [`MAX_ANISOTROPY`].
     pub max_anisotropy: f32,
     /// Surfaces with different seeds have different glints.
     pub seed: u32,
@@ -77,54 +91,34 @@ pub struct SlopeSum {
     pub cells: u32,
 }
 
-/// ln(1 + x) / x for x ≥ 0, accurate for small x too.
-pub fn log1p_over_x(x: f32) -> f32 {
-    if x > 0.3 {
-        return (1.0 + x).ln() / x;
-    }
-    let d = 1.0 / (2.0 + x);
-    let s = x * d;
-    let s2 = s * s;
-    2.0 * d * (1.0 + s2 * (1.0 / 3.0 + s2 * (0.2 + s2 * (1.0 / 7.0))))
+/// Pixel footprint on the surface: symmetric matrix of squared radii, and its level of detail.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelFootprint {
+    /// Entry xx of the matrix of squared radii, cells².
+    pub xx: f32,
+    /// Entry xy of that matrix, cells².
+    pub xy: f32,
+    /// Entry yy of that matrix, cells².
+    pub yy: f32,
+    /// Level at which the minor radius is one cell, in 0 to [`MAX_CELL_LEVEL`].
+    pub lod: f32,
 }
 
-/// Slope in units of the roughness, with its squared length kept finite.
-pub fn scaled_slope(material: &GlintMaterial, slope: Vec2) -> Vec2 {
-    let limit = 1.0e12;
-    Vec2::new((slope.x / material.alpha.x).clamp(-limit, limit), (slope.y / material.alpha.y).clamp(-limit, limit))
-}
-
-/// The smooth target at a slope.
-pub fn smooth_sdf(material: &GlintMaterial, slope: Vec2) -> f32 {
-    let v = scaled_slope(material, slope);
-    let q = v.x * v.x + v.y * v.y;
-    let area = PI * material.alpha.x * material.alpha.y;
-    if material.target == TARGET_GGX {
-        return 1.0 / (area * (1.0 + q) * (1.0 + q));
-    }
-    (-q).exp() / area
-}
-
-/// Marginal P(x) at a level below `levels`, for x ≥ 0: linear filtering with clamp to edge, zero beyond the domain.
-pub fn marginal(tables: &Tables, index: u32, level: u32, x: f32) -> f32 {
-    if x >= tables.domain {
-        return 0.0;
-    }
-    let t = (x * tables.inv_spacing - 0.5).clamp(0.0, (tables.entries - 1) as f32);
-    let low = t.floor();
-    let f = t - low;
-    let row = (level * tables.marginals + index) * tables.entries;
-    let b0 = low as u32;
-    let b1 = (b0 + 1).min(tables.entries - 1);
-    let v0 = tables.texels[(row + b0) as usize];
-    let v1 = tables.texels[(row + b1) as usize];
-    v0 + (v1 - v0) * f
-}
-
-/// Level for n facets a cell, n given by its logarithm to base 2, before rounding: ½ log₂ n.
-pub fn facet_level(tables: &Tables, material: &GlintMaterial, cell_level: u32) -> f32 {
-    let cells_above = (tables.levels - 1) as f32 - cell_level as f32;
-    0.5 * material.density.max(1.0e-30).log2() - cells_above
+/// The footprint in cells of one level: an ellipse around `centre`, which is relative to the corner of the base cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LevelWindow {
+    /// Column and row of the base cell.
+    pub base: IVec2,
+    /// Centre of the footprint from the corner of the base cell, 0 to 1.
+    pub centre: Vec2,
+    /// Squared radius along y in cells².
+    pub yy: f32,
+    /// Inverse of the matrix of squared radii: (xx, xy, yy).
+    pub inverse: Vec3,
+    /// First row that may hold a cell centre, relative to the base cell.
+    pub first_row: i32,
+    /// Last such row.
+    pub last_row: i32,
 }
 
 /// A slope as all cells see it: what of a look-up does not depend on the cell.
@@ -137,58 +131,148 @@ pub struct SlopeQuery {
     /// From the dictionary's density to that of the material.
     pub jacobian: f32,
     /// The smooth target.
-    pub smooth: f32,
+    pub smooth_sdf: f32,
 }
 
-/// The query for a slope of a material.
-pub fn slope_query(tables: &Tables, material: &GlintMaterial, slope: Vec2) -> SlopeQuery {
+/// Slope distribution of one cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellSdf {
+    /// Density over slopes, by colour.
+    pub sdf: Vec3,
+    /// 1 or 0 as the cell glints or not.
+    pub covered: f32,
+}
+
+/// A pixel's BRDF and what of it is left to the base material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PatchBrdf {
+    /// BRDF, by colour, already weighted by the coverage.
+    pub value: Vec3,
+    /// Share of the footprint that glints.
+    pub coverage: f32,
+    /// Cells visited.
+    pub cells: u32,
+}
+
+/// Footprint of the derivatives of the surface position along the two screen axes, in cells a pixel. The minor radius
+/// grows until the axes are at most `max_anisotropy` (1 to [`MAX_ANISOTROPY`]) apart, so the pixel is blurred rather
+/// than cut.
+pub fn pixel_footprint(d_dx: Vec2, d_dy: Vec2, max_anisotropy: f32) -> PixelFootprint {
+    // Far beyond what the coarsest level can tell apart, and its fourth power is still a finite float.
+    let limit = 1.0e8;
+    let dx = Vec2::new(d_dx.x.clamp(-limit, limit), d_dx.y.clamp(-limit, limit));
+    let dy = Vec2::new(d_dy.x.clamp(-limit, limit), d_dy.y.clamp(-limit, limit));
+    let a = dx.x * dx.x + dy.x * dy.x;
+    let b = dx.x * dx.y + dy.x * dy.y;
+    let c = dx.y * dx.y + dy.y * dy.y;
+    let half_difference = 0.5 * (a - c);
+    let half_gap = (half_difference * half_difference + b * b).sqrt();
+    let mut major2 = 0.5 * (a + c) + half_gap;
+    let cross = dx.x * dy.y - dx.y * dy.x;
+    let mut minor2 = cross * cross / major2.max(1.0e-30);
+    let ratio = max_anisotropy.clamp(1.0, MAX_ANISOTROPY);
+    minor2 = minor2.max(major2 / (ratio * ratio)).min(major2);
+
+    let coarsest = (MAX_CELL_LEVEL as f32).exp2();
+    let shrink = (coarsest * coarsest / minor2.max(1.0e-30)).min(1.0);
+    major2 *= shrink;
+    minor2 *= shrink;
+    let mut direction = Vec2::ZERO;
+    if half_gap > 0.0 {
+        direction = Vec2::new(half_difference / half_gap, b / half_gap);
+    }
+    let mean = 0.5 * (major2 + minor2);
+    let spread = 0.5 * (major2 - minor2);
+    PixelFootprint {
+        xx: mean + spread * direction.x,
+        xy: spread * direction.y,
+        yy: mean - spread * direction.x,
+        lod: 0.5 * minor2.max(1.0).log2(),
+    }
+}
+
+/// The footprint around `position` (in cells of level 0) at a whole level.
+pub fn level_window(footprint: PixelFootprint, position: Vec2, level: u32) -> LevelWindow {
+    let scale = (-(level as f32)).exp2();
+    let limit = 1.0e9;
+    let p = Vec2::new((position.x * scale).clamp(-limit, limit), (position.y * scale).clamp(-limit, limit));
+    let base = Vec2::new(p.x.floor(), p.y.floor());
+    let centre = Vec2::new(p.x - base.x, p.y - base.y);
+    let scale2 = scale * scale;
+    let xx = footprint.xx * scale2 + RECONSTRUCTION_RADIUS2;
+    let xy = footprint.xy * scale2;
+    let yy = footprint.yy * scale2 + RECONSTRUCTION_RADIUS2;
+    let reach = yy.sqrt();
+    let det = (xx * yy - xy * xy).max(RECONSTRUCTION_RADIUS2 * RECONSTRUCTION_RADIUS2);
+    LevelWindow {
+        base: base.as_ivec2(),
+        centre,
+        yy,
+        inverse: Vec3::new(yy, -xy, xx) / det,
+        first_row: (centre.y - reach - 0.5).ceil() as i32,
+        last_row: (centre.y + reach - 0.5).floor() as i32,
+    }
+}
+
+/// First and last column, relative to the base cell, whose centres lie in the ellipse in `row`; the span is empty if
+/// the first is larger.
+pub fn row_span(window: LevelWindow, row: i32) -> IVec2 {
+    let dy = row as f32 + 0.5 - window.centre.y;
+    let mid = window.centre.x - window.inverse.y / window.inverse.x * dy;
+    let half = ((1.0 - dy * dy / window.yy).max(0.0) / window.inverse.x).sqrt();
+    IVec2::new((mid - half - 0.5).ceil() as i32, (mid + half - 0.5).floor() as i32)
+}
+
+/// Weight, not yet normalised, of a cell by its place relative to the base cell. Zero at the rim and beyond.
+pub fn cell_weight(window: LevelWindow, column: i32, row: i32) -> f32 {
+    let dx = column as f32 + 0.5 - window.centre.x;
+    let dy = row as f32 + 0.5 - window.centre.y;
+    let r2 = window.inverse.x * dx * dx + 2.0 * window.inverse.y * dx * dy + window.inverse.z * dy * dy;
+    let inside = (1.0 - r2).max(0.0);
+    inside * inside
+}
+
+/// ln(1 + x) / x for x ≥ 0, accurate for small x too.
+pub fn log1p_over_x(x: f32) -> f32 {
+    if x > 0.3 {
+        return (1.0 + x).ln() / x;
+    }
+    let d = 1.0 / (2.0 + x);
+    let s = x * d;
+    let s2 = s * s;
+    2.0 * d * (1.0 + s2 * (1.0 / 3.0 + s2 * (0.2 + s2 * (1.0 / 7.0))))
+}
+
+/// Slope in units of the roughness, with its squared length kept finite.
+pub fn scaled_slope(material: &DictionaryMaterial, slope: Vec2) -> Vec2 {
+    let limit = 1.0e12;
+    Vec2::new((slope.x / material.alpha.x).clamp(-limit, limit), (slope.y / material.alpha.y).clamp(-limit, limit))
+}
+
+/// The smooth target at a slope.
+pub fn smooth_sdf(material: &DictionaryMaterial, slope: Vec2) -> f32 {
     let v = scaled_slope(material, slope);
     let q = v.x * v.x + v.y * v.y;
-    let mut stretch = tables.alpha_dict;
-    let mut jacobian = tables.alpha_dict * tables.alpha_dict / (material.alpha.x * material.alpha.y);
-    let mut q_dict = q;
-    if material.target == TARGET_GGX {
-        let ratio = log1p_over_x(q);
-        stretch *= ratio.sqrt();
-        q_dict = q * ratio;
-        jacobian /= 1.0 + q;
+    let area = PI * material.alpha.x * material.alpha.y;
+    if material.normal_target == TARGET_GGX {
+        return 1.0 / (area * (1.0 + q) * (1.0 + q));
     }
-    SlopeQuery { in_dict: v * stretch, q_dict, jacobian, smooth: smooth_sdf(material, slope) }
+    (-q).exp() / area
 }
 
-/// Slope distribution of one cell (Eq. 11): density by colour, and 1 or 0 as the cell glints or not. `state` is that of
-/// the cell's coherent index (Eq. 8), its first cell of level 0.
-pub fn cell_sdf(
-    tables: &Tables,
-    material: &GlintMaterial,
-    state: CellState,
-    facet_level: f32,
-    query: &SlopeQuery,
-) -> (Vec3, f32) {
-    if material.relative_area < 1.0 && draw_uniform(state, DRAW_COVERAGE) >= material.relative_area {
-        return (Vec3::ZERO, 0.0);
+/// Marginal P(x) at a level below `levels`, for x ≥ 0: linear filtering with clamp to edge, zero beyond the domain.
+pub fn marginal(tables: &Tables, index: u32, level: u32, x: f32) -> f32 {
+    if x >= tables.domain {
+        return 0.0;
     }
-    let mut wished = facet_level;
-    if material.density_randomisation > 0.0 {
-        let radius = (-2.0 * (1.0 - draw_uniform(state, DRAW_DENSITY_RADIUS)).ln()).sqrt();
-        let normal = radius * (2.0 * PI * draw_uniform(state, DRAW_DENSITY_ANGLE)).cos();
-        wished += material.density_randomisation * normal;
-    }
-    let level = (wished + 0.5).floor().clamp(0.0, tables.levels as f32) as u32;
-    if level == tables.levels {
-        return (material.mean_colour * query.smooth, 1.0);
-    }
+    let place = (x * tables.inv_spacing - 0.5).clamp(0.0, (tables.entries - 1) as f32);
+    tables.filtered(level * tables.marginals + index, place)
+}
 
-    let turn = cell_rotation(state.a);
-    let px = turn.x * query.in_dict.x + turn.y * query.in_dict.y;
-    let py = turn.x * query.in_dict.y - turn.y * query.in_dict.x;
-    let i = pick(tables.marginals, state.b);
-    let j = pick(tables.marginals, state.b << 16);
-    let sdf = marginal(tables, i, level, px.abs()) * marginal(tables, j, level, py.abs()) * query.jacobian;
-    if material.colours.is_empty() {
-        return (Vec3::splat(sdf), 1.0);
-    }
-    (glint_colour(tables, material, draw_bits(state, DRAW_COLOUR), level, query.q_dict) * sdf, 1.0)
+/// Level for n facets a cell, n given by its logarithm to base 2, before rounding: ½ log₂ n.
+pub fn facet_level(tables: &Tables, material: &DictionaryMaterial, cell_level: u32) -> f32 {
+    let cells_above = (tables.levels - 1) as f32 - cell_level as f32;
+    0.5 * material.density.max(1.0e-30).log2() - cells_above
 }
 
 /// Cosine and sine, within 1.1e-5, of the angle between −π/4 and π/4 that a random word stands for.
@@ -206,7 +290,7 @@ pub fn pick(count: u32, bits: u32) -> u32 {
 }
 
 /// Colour of a cell's glint, of a material that has colours: the cell's own colour while a facet or less is lit, the mean of all where many are.
-pub fn glint_colour(tables: &Tables, material: &GlintMaterial, bits: u32, level: u32, q_dict: f32) -> Vec3 {
+pub fn colour(tables: &Tables, material: &DictionaryMaterial, bits: u32, level: u32, q_dict: f32) -> Vec3 {
     let own = material.colours[pick(material.colours.len() as u32, bits) as usize];
     let density = (-q_dict).exp() / (PI * tables.alpha_dict * tables.alpha_dict);
     let lit = (2.0 * (level as f32 + 1.0)).exp2() * tables.lobe_area * density;
@@ -214,19 +298,71 @@ pub fn glint_colour(tables: &Tables, material: &GlintMaterial, bits: u32, level:
     material.mean_colour + (own - material.mean_colour) * share
 }
 
+/// The query for a slope of a material.
+pub fn slope_query(tables: &Tables, material: &DictionaryMaterial, slope: Vec2) -> SlopeQuery {
+    let v = scaled_slope(material, slope);
+    let q = v.x * v.x + v.y * v.y;
+    let mut stretch = tables.alpha_dict;
+    let mut jacobian = tables.alpha_dict * tables.alpha_dict / (material.alpha.x * material.alpha.y);
+    let mut q_dict = q;
+    if material.normal_target == TARGET_GGX {
+        let ratio = log1p_over_x(q);
+        stretch *= ratio.sqrt();
+        q_dict = q * ratio;
+        jacobian /= 1.0 + q;
+    }
+    SlopeQuery { in_dict: v * stretch, q_dict, jacobian, smooth_sdf: smooth_sdf(material, slope) }
+}
+
+/// Slope distribution of one cell (Eq. 11): `state` is that of the cell's coherent index (Eq. 8), its first
+/// cell of level 0.
+pub fn cell_sdf(
+    tables: &Tables,
+    material: &DictionaryMaterial,
+    state: CellState,
+    facet_level: f32,
+    query: &SlopeQuery,
+) -> CellSdf {
+    if material.relative_area < 1.0 && draw_uniform(state, DRAW_COVERAGE) >= material.relative_area {
+        return CellSdf { sdf: Vec3::ZERO, covered: 0.0 };
+    }
+    let mut wished = facet_level;
+    if material.density_randomisation > 0.0 {
+        let radius = (-2.0 * (1.0 - draw_uniform(state, DRAW_DENSITY_RADIUS)).ln()).sqrt();
+        let normal = radius * (2.0 * PI * draw_uniform(state, DRAW_DENSITY_ANGLE)).cos();
+        wished += material.density_randomisation * normal;
+    }
+    let level = (wished + 0.5).floor().clamp(0.0, tables.levels as f32) as u32;
+    if level == tables.levels {
+        return CellSdf { sdf: material.mean_colour * query.smooth_sdf, covered: 1.0 };
+    }
+
+    let turn = cell_rotation(state.a);
+    let px = turn.x * query.in_dict.x + turn.y * query.in_dict.y;
+    let py = turn.x * query.in_dict.y - turn.y * query.in_dict.x;
+    let i = pick(tables.marginals, state.b);
+    let j = pick(tables.marginals, state.b << 16);
+    let sdf = marginal(tables, i, level, px.abs()) * marginal(tables, j, level, py.abs()) * query.jacobian;
+    if material.colours.is_empty() {
+        return CellSdf { sdf: Vec3::splat(sdf), covered: 1.0 };
+    }
+    let colour = colour(tables, material, draw_bits(state, DRAW_COLOUR), level, query.q_dict);
+    CellSdf { sdf: colour * sdf, covered: 1.0 }
+}
+
 /// Slope distribution of the footprint at one whole level (algorithm 2), its weights normalised.
 pub fn level_sdf(
     tables: &Tables,
-    material: &GlintMaterial,
+    material: &DictionaryMaterial,
     footprint: PixelFootprint,
     position: Vec2,
     level: u32,
     query: &SlopeQuery,
 ) -> SlopeSum {
     let count_level = facet_level(tables, material, level);
-    if count_level - 6.0 * material.density_randomisation >= tables.levels as f32 - 0.5 && material.relative_area >= 1.0
-    {
-        return SlopeSum { sdf: material.mean_colour * query.smooth, coverage: 1.0, cells: 0 };
+    let surely_smooth = count_level - 6.0 * material.density_randomisation >= tables.levels as f32 - 0.5;
+    if surely_smooth && material.relative_area >= 1.0 {
+        return SlopeSum { sdf: material.mean_colour * query.smooth_sdf, coverage: 1.0, cells: 0 };
     }
     let window = level_window(footprint, position, level);
     let mut sdf = Vec3::ZERO;
@@ -234,16 +370,16 @@ pub fn level_sdf(
     let mut total = 0.0;
     let mut cells = 0;
     for row in window.first_row..=window.last_row {
-        let (first, last) = row_span(window, row);
-        let y = (window.base_y.wrapping_add(row) as u32) << level;
+        let span = row_span(window, row);
+        let y = (window.base.y.wrapping_add(row) as u32) << level;
         let key = row_key(y, material.seed);
-        for column in first..=last {
+        for column in span.x..=span.y {
             let weight = cell_weight(window, column, row);
-            let x = (window.base_x.wrapping_add(column) as u32) << level;
+            let x = (window.base.x.wrapping_add(column) as u32) << level;
             let state = cell_state_in_row(x, y, key, material.seed);
-            let (cell, covered) = cell_sdf(tables, material, state, count_level, query);
-            sdf += cell * weight;
-            coverage += covered * weight;
+            let cell = cell_sdf(tables, material, state, count_level, query);
+            sdf += cell.sdf * weight;
+            coverage += cell.covered * weight;
             total += weight;
             cells += 1;
         }
@@ -252,17 +388,15 @@ pub fn level_sdf(
 }
 
 /// Slope distribution of a pixel (Eq. 12) at the slope of the half vector.
-pub fn patch_sdf(tables: &Tables, material: &GlintMaterial, pixel: PixelOnSurface, slope: Vec2) -> SlopeSum {
+pub fn patch_sdf(tables: &Tables, material: &DictionaryMaterial, pixel: PixelOnSurface, slope: Vec2) -> SlopeSum {
     let cells_per_unit = ((tables.levels - 1) as f32).exp2();
-    let d_dx = pixel.d_dx * cells_per_unit;
-    let d_dy = pixel.d_dy * cells_per_unit;
-    let footprint = pixel_footprint(d_dx, d_dy, material.max_anisotropy);
+    let footprint = pixel_footprint(pixel.d_dx * cells_per_unit, pixel.d_dy * cells_per_unit, material.max_anisotropy);
     let fine = footprint.lod.floor().min((MAX_CELL_LEVEL - 1) as f32);
     let blend = footprint.lod - fine;
-    let cell_position = pixel.position * cells_per_unit;
+    let position = pixel.position * cells_per_unit;
     let query = slope_query(tables, material, slope);
-    let a = level_sdf(tables, material, footprint, cell_position, fine as u32, &query);
-    let b = level_sdf(tables, material, footprint, cell_position, fine as u32 + 1, &query);
+    let a = level_sdf(tables, material, footprint, position, fine as u32, &query);
+    let b = level_sdf(tables, material, footprint, position, fine as u32 + 1, &query);
     SlopeSum {
         sdf: a.sdf + (b.sdf - a.sdf) * blend,
         coverage: a.coverage + (b.coverage - a.coverage) * blend,
@@ -270,32 +404,18 @@ pub fn patch_sdf(tables: &Tables, material: &GlintMaterial, pixel: PixelOnSurfac
     }
 }
 
-/// A pixel's BRDF and what of it is left to the base material.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PatchBrdf {
-    /// BRDF, by colour, already weighted by the coverage.
-    pub value: Vec3,
-    /// Share of the footprint that glints.
-    pub coverage: f32,
-    /// Cells visited.
-    pub cells: u32,
-}
-
 /// BRDF of a pixel (Eq. 14, algorithm 1) for unit directions to the viewer and the light, in the tangent frame. Zero if either
 /// is not above the surface.
 pub fn patch_brdf(
     tables: &Tables,
-    material: &GlintMaterial,
+    material: &DictionaryMaterial,
     f0: Vec3,
     pixel: PixelOnSurface,
     view: Vec3,
     light: Vec3,
 ) -> PatchBrdf {
-    if !(view.z > 0.0 && light.z > 0.0) {
-        return PatchBrdf { value: Vec3::ZERO, coverage: 0.0, cells: 0 };
-    }
     let half = half_vector(view, light);
-    let slopes = patch_sdf(tables, material, pixel, normal_to_slope(half));
-    let value = facet_brdf(sdf_to_ndf(slopes.sdf, half.z), f0, view, light);
-    PatchBrdf { value, coverage: slopes.coverage, cells: slopes.cells }
+    let sum = patch_sdf(tables, material, pixel, normal_to_slope(half));
+    let value = facet_brdf(sdf_to_ndf(sum.sdf, half.z), f0, view, light);
+    PatchBrdf { value, coverage: sum.coverage, cells: sum.cells }
 }

@@ -1,13 +1,14 @@
-// Dictionary of 1D marginal slope distributions: slope distribution of a pixel.
+// Dictionary of 1D marginal slope distributions: slope distribution and BRDF of a pixel.
 // Chermain et al. 2020, "Procedural Physically based BRDF for Real-Time Rendering of Glints", sections 5 and 6, Eq. 7 to 16.
-// Twin of glint-bake-core dictionary/{cells,eval,brdf}.rs, where deviations from the paper are derived.
+// Twin of eval.rs, where deviations from the paper are derived.
 //
 // Accessors that the including program defines:
 //   fn glint_dictionary_filtered(row: u32, place: f32) -> f32
-//       row `level * marginals + marginal` of the table (section SDTB) at `place` texels from the centre of its first one,
-//       linearly filtered and clamped to the edges
+//       row `level * marginals + marginal` of the table (section SDTB) at `place` entries from the centre of its first one, from
+//       0 to entries - 1, linearly filtered
 //   fn glint_dictionary_colour(index: u32) -> vec3f          glint colour, linear RGB; called only if material.colours > 0
 
+#import brdf
 #import hash
 
 const GLINT_TARGET_BECKMANN: u32 = 0u;
@@ -24,7 +25,7 @@ const GLINT_DRAW_DENSITY_RADIUS: u32 = 1u;
 const GLINT_DRAW_DENSITY_ANGLE: u32 = 2u;
 const GLINT_DRAW_COLOUR: u32 = 3u;
 
-// Shape of the tables, from the section SDPP.
+// Shape of the tables: section SDUB.
 struct GlintDictionaryTables {
     marginals: u32,
     // This level itself is the smooth target.
@@ -38,6 +39,7 @@ struct GlintDictionaryTables {
     inv_spacing: f32,
     // Slope area that a lobe fills, 4 pi lobe_std^2.
     lobe_area: f32,
+    unused: u32,
 }
 
 struct GlintDictionaryMaterial {
@@ -110,9 +112,22 @@ struct GlintSlopeQuery {
     smooth_sdf: f32,
 }
 
+// Slope distribution of one cell.
 struct GlintCellSdf {
+    // Density over slopes, by colour.
     sdf: vec3f,
+    // 1 or 0 as the cell glints or not.
     covered: f32,
+}
+
+// A pixel's BRDF and what of it is left to the base material.
+struct GlintPatchBrdf {
+    // BRDF, by colour, already weighted by the coverage.
+    value: vec3f,
+    // Share of the footprint that glints.
+    coverage: f32,
+    // Cells visited.
+    cells: u32,
 }
 
 // Footprint of the derivatives of the surface position along the screen axes, in cells of level 0 a pixel.
@@ -376,4 +391,20 @@ fn glint_patch_sdf(
         a.coverage + (b.coverage - a.coverage) * blend,
         a.cells + b.cells,
     );
+}
+
+// BRDF of a pixel (Eq. 14, algorithm 1) for unit directions to the viewer and the light, in the tangent frame. Zero if either
+// is not above the surface.
+fn glint_patch_brdf(
+    tables: GlintDictionaryTables,
+    material: GlintDictionaryMaterial,
+    f0: vec3f,
+    pixel: GlintPixelOnSurface,
+    view: vec3f,
+    light: vec3f,
+) -> GlintPatchBrdf {
+    let half = glint_half_vector(view, light);
+    let sum = glint_patch_sdf(tables, material, pixel, glint_normal_to_slope(half));
+    let value = glint_facet_brdf(glint_sdf_to_ndf(sum.sdf, half.z), f0, view, light);
+    return GlintPatchBrdf(value, sum.coverage, sum.cells);
 }

@@ -4,15 +4,15 @@
 //! deviations of the target). Defaults are the paper's.
 
 use crate::error::{BakeError, Result};
-use glint_formats::dictionary::MAX_TEXTURE_SIZE;
+use glint_formats::dictionary::{MAX_TABLE_SIDE, MAX_TABLE_WORDS};
 
 /// The domain of a marginal ends at this many standard deviations of the target marginal (paper, section 7.3).
-pub const DOMAIN_DEVIATIONS: f64 = 4.0;
+pub const DOMAIN_STDS: f64 = 4.0;
 /// Narrowest lobe that the table can carry, as a fraction of the distance of two entries. At this width the sum over
 /// bin centres of one lobe varies by up to 18 % with where it falls, which normalisation takes out again; below it
 /// a lobe can fall between two entries and its table would be empty.
 pub const MIN_LOBE_SPACINGS: f64 = 0.35;
-/// Narrowest lobe whose density, at most 0.48 / deviation at a bin centre, fits a half float.
+/// Narrowest lobe whose density, at most 0.48 over its standard deviation at a bin centre, fits a half float.
 pub const MIN_LOBE_STD: f64 = 1e-5;
 /// Largest number of levels: the last level of each marginal then has 2^19 independent lobes.
 pub const MAX_LEVELS: u32 = 20;
@@ -48,7 +48,7 @@ impl DictionaryOptions {
 
     /// Largest slope a table holds.
     pub fn domain(&self) -> f64 {
-        DOMAIN_DEVIATIONS * self.target_std()
+        DOMAIN_STDS * self.target_std()
     }
 
     /// Slope between two neighbouring entries; entry b stands at (b + ½) · spacing.
@@ -63,7 +63,7 @@ impl DictionaryOptions {
         target * target - self.lobe_std * self.lobe_std - spacing * spacing / 6.0
     }
 
-    /// Number of tables, one a level and marginal; also the rows of the texture.
+    /// Number of tables, one a level and marginal.
     pub fn tables(&self) -> u64 {
         u64::from(self.marginals) * u64::from(self.levels)
     }
@@ -72,64 +72,63 @@ impl DictionaryOptions {
     ///
     /// # Errors
     /// [`BakeError::BadOption`] names the option, what was found and what would work;
-    /// [`BakeError::LimitExceeded`] if the texture would be larger than WebGPU guarantees.
+    /// [`BakeError::LimitExceeded`] if the table would be larger than a pack may have.
     pub fn validate(&self) -> Result<()> {
         for (name, value) in [("marginals", self.marginals), ("levels", self.levels), ("entries", self.entries)] {
             if value == 0 {
-                return bad(format!("--{name} is 0: the dictionary would be empty; give at least 1"));
+                return bad(format!("{name}: expected 1 or more, found 0, of which the dictionary would be empty"));
             }
         }
         if self.levels > MAX_LEVELS {
-            return bad(format!("--levels is {}: at most {MAX_LEVELS} levels can be baked", self.levels));
+            return bad(format!("levels: expected 1 to {MAX_LEVELS}, found {}", self.levels));
         }
         if !(0.01..=10.0).contains(&self.alpha_dict) {
             return bad(format!(
-                "--alpha-dict is {}: expected 0.01 to 10, so that densities fit half floats; it does not limit the \
+                "alpha-dict: expected 0.01 to 10, so that densities fit half floats, found {}; it does not limit the \
                  roughness at run time",
                 self.alpha_dict
             ));
         }
         if !(self.lobe_std.is_finite() && self.lobe_std >= MIN_LOBE_STD) {
             return bad(format!(
-                "--lobe-std is {}: expected a slope of {MIN_LOBE_STD} or more, so that densities fit half floats",
+                "lobe-std: expected a slope of {MIN_LOBE_STD} or more, so that densities fit half floats, found {}",
                 self.lobe_std
             ));
         }
         if self.lobe_std >= self.domain() {
             return bad(format!(
-                "--lobe-std is {}, above the domain of the tables, which ends at slope {:.4}",
-                self.lobe_std,
-                self.domain()
+                "lobe-std: expected a slope below the domain of the tables, which ends at {:.4}, found {}",
+                self.domain(),
+                self.lobe_std
             ));
         }
         let narrowest = MIN_LOBE_SPACINGS * self.spacing();
         if self.lobe_std < narrowest {
             return bad(format!(
-                "--lobe-std is {}: with {} entries, {:.5} apart, a lobe can fall between two of them and leave its \
-                 table empty; give --lobe-std {narrowest:.5} or more, or --entries {} or more",
-                self.lobe_std,
+                "lobe-std: expected {narrowest:.5} or more for {} entries, {:.5} apart, or {} entries or more, found {}: a \
+                 lobe can fall between two entries and leave its table empty",
                 self.entries,
                 self.spacing(),
-                (MIN_LOBE_SPACINGS * self.domain() / self.lobe_std).ceil()
+                (MIN_LOBE_SPACINGS * self.domain() / self.lobe_std).ceil(),
+                self.lobe_std
             ));
         }
         if self.mean_variance() <= 0.0 {
             return bad(format!(
-                "--lobe-std is {}: with {} entries one lobe as the sampler reads it is wider than the target, whose \
-                 standard deviation is {:.4}; give narrower lobes or more entries",
-                self.lobe_std,
+                "lobe-std: expected lobes that are narrower than the target, whose standard deviation is {:.4}, as the \
+                 sampler reads them with {} entries, found {}; narrower lobes or more entries would work",
+                self.target_std(),
                 self.entries,
-                self.target_std()
+                self.lobe_std
             ));
         }
-        if self.entries > MAX_TEXTURE_SIZE || self.tables() > u64::from(MAX_TEXTURE_SIZE) {
+        let (rows, entries) = (self.tables(), u64::from(self.entries));
+        let most = u64::from(MAX_TABLE_SIDE);
+        if entries > most || rows > most || rows * entries > MAX_TABLE_WORDS {
             return Err(BakeError::LimitExceeded(format!(
-                "the table would be {} × {} texels ({} marginals × {} levels): WebGPU guarantees {MAX_TEXTURE_SIZE} a \
-                 side; give fewer --marginals, --levels or --entries",
-                self.entries,
-                self.tables(),
-                self.marginals,
-                self.levels
+                "expected at most {most} tables, of {most} entries, and {MAX_TABLE_WORDS} entries in \
+                 all, found {rows} tables ({} marginals × {} levels) of {entries} entries",
+                self.marginals, self.levels
             )));
         }
         Ok(())

@@ -4,8 +4,9 @@
 //! domain. Distances are over the whole line, of the even distribution: L1 = ∫|P − T|, KS = sup|F_P − F_T|; what the
 //! target has beyond the domain counts.
 
-use super::options::{DOMAIN_DEVIATIONS, DictionaryOptions};
-use super::tables::Dictionary;
+use super::baked::Dictionary;
+use super::eval::{MAX_ANISOTROPY, RECONSTRUCTION_RADIUS2};
+use super::options::{DOMAIN_STDS, DictionaryOptions};
 use glint_formats::dictionary::MeasuredError;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
@@ -109,7 +110,7 @@ pub fn target_density(options: &DictionaryOptions, x: f64) -> f64 {
 
 /// KS distance that the end of the domain leaves: half of the target's share beyond it.
 pub fn domain_floor() -> f64 {
-    0.5 * libm::erfc(DOMAIN_DEVIATIONS * FRAC_1_SQRT_2)
+    0.5 * libm::erfc(DOMAIN_STDS * FRAC_1_SQRT_2)
 }
 
 /// Mean over marginals of one level's tables.
@@ -189,4 +190,16 @@ fn independent_variance(options: &DictionaryOptions, level: u32, x: f64) -> f64 
     let mirrored = libm::exp(-x * x / s2) / (2.0 * PI * s2) / (1.0 + 2.0 * m2 / s2).sqrt();
     let mean = gauss(m2 + s2);
     (0.5 * same + 0.5 * mirrored - mean * mean) / f64::from(1u32 << level)
+}
+
+/// Bound on the cells of one query, both levels together: area plus perimeter of the largest ellipse of each level.
+pub fn max_cells(max_anisotropy: f32) -> u32 {
+    let ratio = max_anisotropy.clamp(1.0, MAX_ANISOTROPY);
+    let mut bound = 0.0;
+    for minor in [2.0f32, 1.0] {
+        let short = (minor * minor + RECONSTRUCTION_RADIUS2).sqrt();
+        let long = (minor * minor * ratio * ratio + RECONSTRUCTION_RADIUS2).sqrt();
+        bound += std::f32::consts::PI * (short + 0.75) * (long + 0.75);
+    }
+    bound.ceil() as u32
 }

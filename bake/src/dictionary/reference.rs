@@ -1,5 +1,5 @@
 //! The dictionary and its run time from the definitions, in f64: slow, and sharing nothing with the fast path but the
-//! random numbers ([`super::draws`], [`crate::hash`]) and the options.
+//! random numbers ([`super::bake::Draws`], [`crate::hash`]) and the options.
 //!
 //! - A marginal is the sum of its lobes and their mirror images, each an exact Gaussian, cut at the domain and divided by
 //!   what is left inside (paper, sections 4.2 to 4.4). Lobe means are quantiles found by bisection.
@@ -7,8 +7,8 @@
 //!   taken along the principal axes (Eq. 8 to 12).
 //! - GGX's radial map comes from the two radial distribution functions, its Jacobian from a difference quotient.
 
-use super::draws::Draws;
-use super::eval::{GlintMaterial, PixelOnSurface, TARGET_GGX};
+use super::bake::Draws;
+use super::eval::{DictionaryMaterial, PixelOnSurface, TARGET_GGX};
 use super::options::DictionaryOptions;
 use crate::hash::{cell_state, draw_bits, draw_uniform};
 use glam::DVec2;
@@ -107,7 +107,7 @@ fn beckmann_radius(r: f64) -> f64 {
 pub fn patch_sdf(
     options: &DictionaryOptions,
     tables: &[Vec<f64>],
-    material: &GlintMaterial,
+    material: &DictionaryMaterial,
     pixel: PixelOnSurface,
     slope: DVec2,
 ) -> ([f64; 3], f64) {
@@ -166,7 +166,7 @@ pub fn patch_sdf(
 fn cell_density(
     options: &DictionaryOptions,
     tables: &[Vec<f64>],
-    material: &GlintMaterial,
+    material: &DictionaryMaterial,
     cell: (u32, u32),
     facets: f64,
     slope: DVec2,
@@ -180,7 +180,7 @@ fn cell_density(
     let wished = facets.max(1e-300).log2() / 2.0 + f64::from(material.density_randomisation) * normal;
     let level = (wished + 0.5).floor().clamp(0.0, f64::from(options.levels)) as u32;
     let alpha = material.alpha.as_dvec2();
-    let ggx = material.target == TARGET_GGX;
+    let ggx = material.normal_target == TARGET_GGX;
     let mean = material.mean_colour.as_dvec3();
     if level == options.levels {
         return Some((mean * smooth_density(ggx, alpha, slope)).to_array());

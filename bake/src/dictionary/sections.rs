@@ -1,26 +1,19 @@
 //! A dictionary as sections of a pack, and back.
 
+use super::baked::Dictionary;
 use super::options::DictionaryOptions;
-use super::tables::Dictionary;
 use crate::error::{BakeError, Result};
-use crate::pack_access::{bytes, names_with, parameters};
-use glint_formats::dictionary::{DictionaryParams, MeasuredError, PARAMS, TABLE};
-use glint_formats::{Codec, Pack, Resource, Section};
+use crate::pack_access::{names_with, parameters, records};
+use glint_formats::dictionary::{DictionaryParams, MeasuredError, PARAMS, TABLE, UNIFORM};
+use glint_formats::{Codec, Pack, Section};
 
-/// The sections of a dictionary under `name`, both compressed when `codec` says so.
+/// The sections of a dictionary under `name`, all compressed when `codec` says so.
 pub fn to_sections(name: &str, dictionary: &Dictionary, measured: MeasuredError, codec: Codec) -> Vec<Section> {
-    let shape = dictionary.shape();
-    let texture = Resource::Texture {
-        vk_format: shape.vk_format,
-        width: shape.width,
-        height: shape.height,
-        layers: 1,
-        faces: 1,
-        mips: 1,
-    };
+    let params = dictionary.params(measured);
     let mut sections = vec![
-        Section::parameters(PARAMS, name, &dictionary.params(measured)),
-        Section::texture(TABLE, name, texture, dictionary.payload()),
+        Section::parameters(PARAMS, name, &params),
+        Section::buffer(UNIFORM, name, &[params.uniform()]),
+        Section::buffer(TABLE, name, &dictionary.pairs()),
     ];
     for section in &mut sections {
         section.codec = codec;
@@ -28,10 +21,18 @@ pub fn to_sections(name: &str, dictionary: &Dictionary, measured: MeasuredError,
     sections
 }
 
+/// Reads the parameters of the dictionary `name`.
+///
+/// # Errors
+/// `BadInput` where there are none, or they are damaged.
+pub fn params(pack: &Pack, name: &str) -> Result<DictionaryParams> {
+    parameters(pack, PARAMS, name)
+}
+
 /// Reads the dictionary `name` and its parameters. The pack must have passed verification; errors name what is missing
 /// or damaged.
 pub fn from_pack(pack: &Pack, name: &str) -> Result<(Dictionary, DictionaryParams)> {
-    let params: DictionaryParams = parameters(pack, PARAMS, name)?;
+    let params = params(pack, name)?;
     let options = DictionaryOptions {
         marginals: params.marginals,
         levels: params.levels,
@@ -45,17 +46,16 @@ pub fn from_pack(pack: &Pack, name: &str) -> Result<(Dictionary, DictionaryParam
         let message = format!("section {PARAMS} of '{name}': expected a domain of {expected}, found {found}");
         return Err(BakeError::BadInput(message));
     }
-    let table = bytes(pack, TABLE, name)?;
-    let texels = options.tables().saturating_mul(u64::from(params.entries));
-    if table.len() as u64 / 2 != texels {
-        let found = table.len() / 2;
-        let message = format!("section {TABLE} of '{name}': expected {texels} texels, found {found}");
+    let words: Vec<u32> = records(pack, TABLE, name)?;
+    let entries = params.table_entries();
+    if words.len() as u64 != entries.next_multiple_of(4) {
+        let found = words.len();
+        let message =
+            format!("section {TABLE} of '{name}': expected {entries} words and zeros up to four, found {found}");
         return Err(BakeError::BadInput(message));
     }
-    let mut bits = Vec::with_capacity(table.len() / 2);
-    for texel in table.chunks_exact(2) {
-        bits.push(u16::from_le_bytes([texel[0], texel[1]]));
-    }
+    // The lower halves are the entries.
+    let bits = words[..entries as usize].iter().map(|word| *word as u16).collect();
     Ok((Dictionary { options, bits }, params))
 }
 
@@ -68,12 +68,13 @@ pub fn dictionaries(pack: &Pack) -> Vec<&str> {
 mod tests {
     use super::*;
     use crate::dictionary::{bake, quality};
+    use crate::progress::Silent;
     use glint_formats::{Limits, PackBuilder};
 
     #[test]
     fn what_was_baked_is_read_back() {
         let options = DictionaryOptions { marginals: 3, levels: 4, entries: 32, lobe_std: 0.05, ..Default::default() };
-        let dictionary = bake(&options).unwrap();
+        let dictionary = bake(&options, &Silent).unwrap();
         let measured = quality::measure(&dictionary);
         for codec in [Codec::None, Codec::Zstd] {
             let mut builder = PackBuilder::new();

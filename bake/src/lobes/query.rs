@@ -136,13 +136,6 @@ struct Slot {
     copy: f32,
 }
 
-impl Slot {
-    /// Lower end in texels, of cells of `edge` in every `length`.
-    fn start(&self, length: f32, edge: f32) -> f32 {
-        self.copy * length + self.index as f32 * edge
-    }
-}
-
 /// The first of the cells of `edge` texels, `count` of them in every `length`, that touch what lies above `low`.
 fn first_slot(low: f32, length: f32, edge: f32, count: u32) -> Slot {
     let copy = (low / length).floor();
@@ -256,12 +249,13 @@ impl BakedLobes {
         let edge = level.cell_texels as f32;
         let frame = &query.frame;
         let ellipse = ellipse(frame, reach);
+        let start = |slot: Slot, length: f32| slot.copy * length + slot.index as f32 * edge;
         let mut visited = 0;
         let mut row = first_slot(frame.mean.y - ellipse.top, size.y, edge, level.cells_y);
-        while row.start(size.y, edge) <= frame.mean.y + ellipse.top {
-            if let Some((low, high)) = cells_span(&ellipse, size, row.start(size.y, edge), edge, row) {
+        while start(row, size.y) <= frame.mean.y + ellipse.top {
+            if let Some((low, high)) = cells_span(&ellipse, size, start(row, size.y), edge, row) {
                 let mut slot = first_slot(low, size.x, edge, level.cells_x);
-                while slot.start(size.x, edge) <= high {
+                while start(slot, size.x) <= high {
                     let place = Vec2::new(slot.index as f32, row.index as f32);
                     let corner = place * edge + Vec2::new(slot.copy, row.copy) * size;
                     let first = level.first_lobe + (row.index * level.cells_x + slot.index) * per_cell;

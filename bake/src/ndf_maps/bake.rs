@@ -63,7 +63,7 @@ pub fn bake_maps(map: &NormalMap, options: &NdfMapsOptions, progress: &dyn Progr
             origin: tile.origin.map(|v| v as f32),
             inv_spacing: tile.spacing.map(|v| (1.0 / v) as f32),
             scale: tile.scale,
-            texel_offset: (density.len() / texel_bytes) as u32,
+            first: (density.len() / texel_bytes) as u32,
             size: tile.width as u32 | (tile.height as u32) << 16,
             error: tile.error as f32,
         });

@@ -38,7 +38,7 @@ pub struct BakedPlacement {
     pub params: PlacementParams,
     /// Transforms.
     pub palette: Vec<TransformRecord>,
-    /// One texel a cell; empty when tiled.
+    /// One texel a sub-region, row by row; empty when tiled.
     pub noise: Vec<NoiseTexel>,
     /// Shares of palette entries, unorm8: all mips, each with ⌈palette / 4⌉ layers of RGBA texels; empty when tiled.
     pub classes: Vec<u8>,

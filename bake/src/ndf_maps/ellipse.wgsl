@@ -1,5 +1,5 @@
-// A footprint as an ellipse, and one tile or box under it: what glint_ndf_maps.wgsl walks over.
-// Twin of glint-bake-core ndf_maps/ellipse.rs. No accessors; lengths are texels.
+// A footprint as an ellipse, and the pieces under it: cells of a grid, places of tiles on the repeating example. Twin of ellipse.rs.
+// No accessors; lengths are texels.
 
 #import footprint
 

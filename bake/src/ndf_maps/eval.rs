@@ -96,7 +96,8 @@ pub(super) struct Gathered {
 }
 
 impl Gathered {
-    pub(super) fn add_tile(&mut self, term: TileTerm) {
+    /// Adds a tile and its share.
+    pub(super) fn add(&mut self, term: TileTerm) {
         self.share += term.weight;
         self.terms.tiles.push(term);
     }
@@ -184,9 +185,15 @@ impl BakedNdfMaps {
             return 0.0;
         }
         let bilinear = self.params.storage == DensityStorage::PaperF32;
-        let [across, down] = [p.x, p.y].map(|p| if bilinear { tent(p) } else { spline(p) });
+        let [across, down] = [p.x, p.y].map(|p| {
+            if !bilinear {
+                return spline(p);
+            }
+            let cell = p.floor();
+            Taps { first: cell as i32, weights: [1.0 - (p - cell), p - cell, 0.0] }
+        });
         let inside = [0, 1, 2].map(|a| (0..size[0]).contains(&(across.first + a)));
-        let start = record.texel_offset as i32 + down.first * size[0] + across.first;
+        let start = record.first as i32 + down.first * size[0] + across.first;
         let mut sum = 0.0;
         for b in 0..3 {
             if (0..size[1]).contains(&(down.first + b)) {
@@ -215,12 +222,6 @@ impl BakedNdfMaps {
         let du = (s10 - s00) * (1.0 - f.y) + (s11 - s01) * f.y;
         (top + (bottom - top) * f.y, Mat2::from_cols(du, bottom - top))
     }
-}
-
-/// Bilinear filtering as three taps, the last of no weight.
-fn tent(p: f32) -> Taps {
-    let cell = p.floor();
-    Taps { first: cell as i32, weights: [1.0 - (p - cell), p - cell, 0.0] }
 }
 
 /// Φ(x).

@@ -10,6 +10,7 @@
 
 pub mod bake;
 pub mod baked;
+mod blocks;
 mod ellipse;
 pub mod eval;
 mod fine_grid;
@@ -18,6 +19,7 @@ pub mod options;
 pub mod placement;
 pub mod quality;
 pub mod query;
+mod reach;
 pub mod reference;
 pub mod reference_surface;
 mod regions;
@@ -26,4 +28,4 @@ mod spline;
 mod tile_fit;
 mod view;
 
-crate::shader::shaders!("ndf_maps": "eval", "ellipse", "material", "tiles", "lobes", "view", "tiled", "regions", "classes", "probes", "stochastic");
+crate::shader::shaders!("ndf_maps": "eval", "ellipse", "view", "regions", "query");

@@ -2,20 +2,16 @@
 
 use crate::error::{BakeError, Result};
 use crate::normal_map::NormalMap;
-use glint_formats::ndf_maps::DensityStorage;
+use glint_formats::ndf_maps::{DensityStorage, MAX_EDGE, MAX_PALETTE};
 
 /// Texels of an example at most; larger maps belong to other methods, or are cropped.
 pub const MAX_EXAMPLE_TEXELS: u64 = 128 * 128;
-/// Texels along an edge of an example at most: what every GPU has in a texture.
-pub const MAX_EXAMPLE_EDGE: u32 = 8192;
 /// Smallest and largest intrinsic roughness σ_r.
 pub const ROUGHNESS_RANGE: (f64, f64) = (1e-4, 1.0);
 /// Error of one tile at most, relative to what is asked of the mean.
 pub const WORST_OF_MEAN: f64 = 3.0;
 /// Edge of the finest tiles, in example texels.
 pub const FINEST_TILE: u32 = 2;
-/// Largest palette: the run time keeps one weight an entry.
-pub const MAX_PALETTE: u32 = 32;
 
 /// Options of a material's bake: its maps and how they cover the surface.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,14 +65,14 @@ impl NdfMapsOptions {
     }
 }
 
-/// Refuses an example of more than [`MAX_EXAMPLE_TEXELS`] texels, or of more than [`MAX_EXAMPLE_EDGE`] along an edge.
+/// Refuses an example of more than [`MAX_EXAMPLE_TEXELS`] texels, or of more than [`MAX_EDGE`] along an edge.
 pub fn check_size(map: &NormalMap) -> Result<()> {
     let (width, height) = (map.width, map.height);
-    if u64::from(width) * u64::from(height) <= MAX_EXAMPLE_TEXELS && width.max(height) <= MAX_EXAMPLE_EDGE {
+    if u64::from(width) * u64::from(height) <= MAX_EXAMPLE_TEXELS && width.max(height) <= MAX_EDGE {
         return Ok(());
     }
     Err(BakeError::LimitExceeded(format!(
-        "expected an example of at most {MAX_EXAMPLE_TEXELS} texels and {MAX_EXAMPLE_EDGE} along an edge, found {width} × \
+        "expected an example of at most {MAX_EXAMPLE_TEXELS} texels and {MAX_EDGE} along an edge, found {width} × \
          {height}; NDF maps are for small examples: use a part of it"
     )))
 }

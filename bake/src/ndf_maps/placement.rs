@@ -4,7 +4,7 @@
 //! sub-regions of an overlap to the example whose centre is nearest. Here the surface is a grid of cells with one centre
 //! each; every cell is divided in four sub-regions, and each shows the example, of the 3 × 3 cells around, whose centre
 //! is nearest to the sub-region's centre. Examples go on periodically beyond their edge, so nothing is left uncovered.
-//! Owners are found once, here, and stored.
+//! Owners are found once, here: the noise map holds of every sub-region the example that it shows.
 //!
 //! Spatial transforms are rotation, mirror, scale, stretch and shear (section 6.1). The paper's matrix M acts on positions and on
 //! normals alike. That is right for rotation, mirror and shear; for a scale it is a choice: `scale` changes an example's size on
@@ -49,17 +49,8 @@ fn place_stochastic(map: &NormalMap, roughness: f64, options: &StochasticOptions
     let palette = draw_palette(&options.ranges, options.palette, options.seed);
     let cells = options.cells;
     let centres: Vec<Centre> = (0..cells * cells).map(|k| Centre::draw(options, k)).collect();
-    let noise: Vec<NoiseTexel> = (0..cells * cells)
-        .map(|k| {
-            let c = &centres[k as usize];
-            NoiseTexel {
-                centre: c.position[0] as u32 | (c.position[1] as u32) << 16,
-                offset: c.offset[0] as u32 | (c.offset[1] as u32) << 16,
-                class_and_owners: c.class | owners(&centres, cells, k) << 16,
-                reserved: 0,
-            }
-        })
-        .collect();
+    let owners: Vec<[u32; 4]> = (0..cells * cells).map(|k| owners(&centres, cells, k)).collect();
+    let noise: Vec<NoiseTexel> = (0..4 * cells * cells).map(|k| shown(&centres, &owners, cells, k)).collect();
     let cell_texels = (map.width.max(map.height) as f64 * options.spacing) as f32;
     Ok(BakedPlacement {
         params: PlacementParams {
@@ -141,26 +132,43 @@ impl Centre {
     }
 }
 
-/// The four owners of cell `k`, 4 bits each.
-fn owners(centres: &[Centre], cells: u32, k: u32) -> u32 {
-    let (cx, cy) = (k % cells, k / cells);
-    let mut bits = 0;
-    for quadrant in 0..4u32 {
+/// Which of the 3 × 3 cells around own the four sub-regions of cell `k`.
+fn owners(centres: &[Centre], cells: u32, k: u32) -> [u32; 4] {
+    [0, 1, 2, 3].map(|quadrant: u32| {
         let middle = DVec2::new((quadrant % 2) as f64 * 0.5 + 0.25, (quadrant / 2) as f64 * 0.5 + 0.25);
         let mut nearest = (f64::INFINITY, 4);
         for neighbour in 0..9u32 {
-            let (dx, dy) = (neighbour % 3, neighbour / 3);
-            let (x, y) = ((cx + cells + dx - 1) % cells, (cy + cells + dy - 1) % cells);
-            let [px, py] = centres[(y * cells + x) as usize].position.map(|v| v as f64 / 65535.0);
-            let centre = DVec2::new(px + dx as f64 - 1.0, py + dy as f64 - 1.0);
+            let [px, py] = centres[cell_at(k, neighbour, cells)].position.map(|v| v as f64 / 65535.0);
+            let centre = DVec2::new(px + (neighbour % 3) as f64 - 1.0, py + (neighbour / 3) as f64 - 1.0);
             let distance = centre.distance_squared(middle);
             if distance < nearest.0 {
                 nearest = (distance, neighbour);
             }
         }
-        bits |= nearest.1 << (4 * quadrant);
+        nearest.1
+    })
+}
+
+/// The cell that is neighbour `neighbour` of the 3 × 3 around cell `k`.
+fn cell_at(k: u32, neighbour: u32, cells: u32) -> usize {
+    let x = (k % cells + cells + neighbour % 3 - 1) % cells;
+    let y = (k / cells + cells + neighbour / 3 - 1) % cells;
+    (y * cells + x) as usize
+}
+
+/// What sub-region `k` shows, rows of 2 `cells`.
+fn shown(centres: &[Centre], owners: &[[u32; 4]], cells: u32, k: u32) -> NoiseTexel {
+    let (x, y) = (k % (2 * cells), k / (2 * cells));
+    let cell = y / 2 * cells + x / 2;
+    let neighbour = owners[cell as usize][(x % 2 + 2 * (y % 2)) as usize];
+    let owner = &centres[cell_at(cell, neighbour, cells)];
+    let pair = |[x, y]: [u16; 2]| u32::from(x) | u32::from(y) << 16;
+    NoiseTexel {
+        centre: pair(owner.position),
+        offset: pair(owner.offset),
+        class_and_neighbour: owner.class | neighbour << 16,
+        reserved: 0,
     }
-    bits
 }
 
 /// Shares of each palette entry in blocks of 1, 2², 4², … cells, as the mips of a layered RGBA texture.
@@ -169,12 +177,9 @@ fn class_mips(noise: &[NoiseTexel], cells: u32, palette: u32) -> Vec<u8> {
     let entries = layers * 4;
     let n = cells as usize;
     let mut shares = vec![0.0f32; n * n * entries];
-    for k in 0..n * n {
-        for quadrant in 0..4 {
-            let owner = owner_cell(noise[k].class_and_owners, k as u32, cells, quadrant);
-            let class = noise[owner as usize].class_and_owners & 0xff;
-            shares[k * entries + class as usize] += 0.25;
-        }
+    for (k, texel) in noise.iter().enumerate() {
+        let cell = k / (2 * n) / 2 * n + k % (2 * n) / 2;
+        shares[cell * entries + texel.class() as usize] += 0.25;
     }
     let mut bytes = Vec::new();
     let mut size = n;
@@ -198,12 +203,4 @@ fn class_mips(noise: &[NoiseTexel], cells: u32, palette: u32) -> Vec<u8> {
         }
         (shares, size) = (next, half);
     }
-}
-
-/// Index of the cell whose example sub-region `quadrant` of cell `k` shows.
-fn owner_cell(class_and_owners: u32, k: u32, cells: u32, quadrant: u32) -> u32 {
-    let neighbour = class_and_owners >> (16 + 4 * quadrant) & 0xf;
-    let x = (k % cells + cells + neighbour % 3 - 1) % cells;
-    let y = (k / cells + cells + neighbour / 3 - 1) % cells;
-    y * cells + x
 }

@@ -31,7 +31,7 @@ impl Material {
         let detail = self.detail(&ellipse, settings);
         let wide = ellipse.minor >= TOP_TILE_SIGMA * self.size().max_element();
         if wide || matches!(detail, Detail::Tiles(level) if self.is_top(level)) {
-            return gathered.add_tile(TileTerm { tile: self.top_tile(), class: 0, weight: 1.0 });
+            return gathered.add(TileTerm { tile: self.top_tile(), class: 0, weight: 1.0 });
         }
         // A sub-region without end.
         let view = View {

@@ -173,28 +173,37 @@ fn find_owners(map: &NormalMap, material: &Material) -> Vec<Owner> {
         return Vec::new();
     };
     let edge = cell_texels as f64;
+    // Cells of which any sub-region shows the example; no other is nearest to one.
+    let noise = &material.placement.noise;
+    let mut cells = vec![None; (cells_x * cells_y) as usize];
+    for (k, texel) in noise.iter().enumerate() {
+        let (x, y) = (k as i64 % i64::from(2 * cells_x) / 2, k as i64 / i64::from(2 * cells_x) / 2);
+        let [dx, dy] = texel.neighbour().map(i64::from);
+        let (x, y) = ((x + dx).rem_euclid(cells_x as i64), (y + dy).rem_euclid(cells_y as i64));
+        cells[(y * cells_x as i64 + x) as usize] = Some(*texel);
+    }
     let mut owners = Vec::new();
     for j in 0..2 * cells_y {
         for i in 0..2 * cells_x {
             let middle = (DVec2::new(i as f64, j as f64) + 0.5) * (0.5 * edge);
             let home = (middle / edge).floor();
-            let mut best = (f64::INFINITY, 0, DVec2::ZERO);
+            let mut best = (f64::INFINITY, noise[0], DVec2::ZERO);
             for dy in -2..=2 {
                 for dx in -2..=2 {
                     let cell = home + DVec2::new(dx as f64, dy as f64);
                     let x = (cell.x as i64).rem_euclid(cells_x as i64);
                     let y = (cell.y as i64).rem_euclid(cells_y as i64);
-                    let at = (y * cells_x as i64 + x) as usize;
-                    let centre = (cell + unorm_pair(material.placement.noise[at].centre)) * edge;
+                    let Some(texel) = cells[(y * cells_x as i64 + x) as usize] else { continue };
+                    let centre = (cell + unorm_pair(texel.centre)) * edge;
                     let distance = centre.distance(middle);
                     if distance < best.0 {
-                        best = (distance, at, centre);
+                        best = (distance, texel, centre);
                     }
                 }
             }
-            let owner = material.placement.noise[best.1];
+            let owner = best.1;
             owners.push(Owner {
-                class: (owner.class_and_owners & 0xff) as usize,
+                class: owner.class() as usize,
                 centre: best.2 - middle,
                 offset: unorm_pair(owner.offset) * example_size(map),
             });

@@ -63,17 +63,13 @@ struct Owner {
 impl Material {
     /// Owner of a sub-region, by its index from the base cell's first one on.
     fn owner_of(&self, cells: Cells, region: IVec2) -> Owner {
-        let index = |cell: IVec2| {
-            let at = cells.base + cell;
-            (at.y.rem_euclid(cells.count) * cells.count + at.x.rem_euclid(cells.count)) as usize
-        };
-        let (cell, quadrant) = (region >> 1, region & 1);
-        let own = self.placement.noise[index(cell)];
-        let neighbour = own.class_and_owners >> (16 + 4 * (quadrant.x + 2 * quadrant.y)) & 0xf;
-        let cell = cell + IVec2::new((neighbour % 3) as i32 - 1, (neighbour / 3) as i32 - 1);
-        let owner = self.placement.noise[index(cell)];
+        let regions = 2 * cells.count;
+        let at = 2 * cells.base + region;
+        let owner = self.placement.noise[(at.y.rem_euclid(regions) * regions + at.x.rem_euclid(regions)) as usize];
+        let [x, y] = owner.neighbour();
+        let cell: IVec2 = (region >> 1i32) + IVec2::new(x, y);
         Owner {
-            class: owner.class_and_owners & 0xff,
+            class: owner.class(),
             centre: (cell.as_vec2() + unorm_pair(owner.centre)) * cells.edge,
             offset: unorm_pair(owner.offset) * self.size(),
         }
@@ -107,7 +103,7 @@ impl Material {
             Detail::Tiles(_) if settings.probes > 0 => self.boxes(&view, LOBE_TEXELS, gathered),
             Detail::Tiles(level) if self.is_top(level) && footprint.minor >= WHOLE_REGION_SIGMA * edge => {
                 let weight = edge * edge * footprint.widened_gaussian(edge, middle);
-                gathered.add_tile(TileTerm { tile: self.top_tile(), class: owner.class, weight });
+                gathered.add(TileTerm { tile: self.top_tile(), class: owner.class, weight });
             }
             Detail::Tiles(level) => self.tiles(&view, settings, level, gathered),
             Detail::Boxes(edge) => self.boxes(&view, edge, gathered),
@@ -169,7 +165,7 @@ impl Material {
         }
         for (class, weight) in shares.into_iter().enumerate() {
             if weight > 0.0 {
-                gathered.add_tile(TileTerm { tile: self.top_tile(), class: class as u32, weight });
+                gathered.add(TileTerm { tile: self.top_tile(), class: class as u32, weight });
             }
         }
     }
@@ -196,13 +192,13 @@ impl Material {
                 let local = x - (x / self.size()).floor() * self.size();
                 let index = (local / level.tile_texels as f32).as_uvec2().min(last);
                 let tile = level.first_tile + index.y * level.tiles_x + index.x;
-                gathered.add_tile(TileTerm { tile, class, weight });
+                gathered.add(TileTerm { tile, class, weight });
             }
         }
     }
 
     /// Example texels a surface texel, by area, under the transform that has most.
-    pub fn most_texels(&self) -> f32 {
+    pub(super) fn most_texels(&self) -> f32 {
         let palette = 0..self.placement.palette.len() as u32;
         palette.map(|class| self.position_to_local(class).determinant().abs().sqrt()).fold(0.0, f32::max)
     }

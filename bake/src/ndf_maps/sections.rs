@@ -1,61 +1,63 @@
-//! A material of the tiny-example method as sections of a pack, and back.
+//! A material of the tiny-example method as sections of a pack, and back. What shaders bind is made here, byte for byte: records
+//! of the uniform, blocks of density, owners of sub-regions.
 
 use super::baked::{BakedNdfMaps, BakedPlacement, Material};
-use crate::error::Result;
+use super::{blocks, reach};
+use crate::error::{BakeError, Result};
 use crate::pack_access::{bytes, names_with, parameters, records};
+use bytemuck::Pod;
+use glint_formats::binding::TABLE_WIDTH;
 use glint_formats::ndf_maps::{
-    CLASSES, DENSITY, LAYERS, LayeredMaterial, NOISE, NORMALS, NdfMapsParams, PALETTE, PARAMS, PLACEMENT,
-    PlacementKind, PlacementParams, TILES,
+    CLASSES, DENSITY, LAYERS, LAYERS_UNIFORM, LayeredMaterial, LayersUniform, MaterialUniform, NOISE, NORMALS,
+    NdfMapsParams, PARAMS, PLACEMENT, PlacementKind, PlacementParams, TILES, TileRecord, TransformRecord, UNIFORM,
+    UNIFORM_BYTES, classes_resource, noise_resource, table,
 };
-use glint_formats::{Codec, Pack, Resource, Section, vk_format};
+use glint_formats::{Codec, FourCc, Pack, Resource, Section, vk_format};
 
-/// The sections of one material under `name`; density texels are compressed when `codec` says so.
+/// A table of elements of `T` as a section: whole rows, zeros at the end.
+fn table_section<T: Pod>(kind: FourCc, name: &str, format: u32, elements: &[T]) -> Section {
+    let row = TABLE_WIDTH as usize * size_of::<T>();
+    let mut payload = bytemuck::cast_slice(elements).to_vec();
+    payload.resize(payload.len().next_multiple_of(row).max(row), 0);
+    Section::texture(kind, name, table(format, elements.len() as u64), payload)
+}
+
+/// The sections of one material under `name`, all compressed or none as `codec` says.
 pub fn to_sections(name: &str, material: &Material, codec: Codec) -> Vec<Section> {
     let Material { maps, placement } = material;
-    let (width, height) = (maps.params.width, maps.params.height);
-    let texel_bytes = maps.params.storage.texel_bytes();
+    let blocks = blocks::blocks(maps);
+    let mut tiles = maps.tiles.clone();
+    for (tile, first) in tiles.iter_mut().zip(blocks.iter().flat_map(|blocks| &blocks.first)) {
+        tile.first = *first;
+    }
+    let header = MaterialUniform::new(&maps.params, &placement.params, blocks.is_some(), material.most_texels());
     let mut sections = vec![
         Section::parameters(PARAMS, name, &maps.params),
-        Section::buffer(TILES, name, &maps.tiles),
         Section {
-            resource: Resource::Buffer {
-                stride: texel_bytes,
-                count: maps.density.len() as u64 / u64::from(texel_bytes),
-            },
-            ..Section::buffer(DENSITY, name, &maps.density)
+            resource: Resource::Buffer { stride: UNIFORM_BYTES as u32, count: 1 },
+            ..Section::buffer(UNIFORM, name, &uniform_bytes(material, &header, &tiles))
         },
-        Section::texture(
-            NORMALS,
-            name,
-            Resource::Texture { vk_format: vk_format::R16G16_SNORM, width, height, layers: 1, faces: 1, mips: 1 },
-            bytemuck::cast_slice(&maps.normals).to_vec(),
-        ),
-        Section::parameters(PLACEMENT, name, &placement.params),
-        Section::buffer(PALETTE, name, &placement.palette),
     ];
-    if let PlacementKind::Stochastic { cells_x, cells_y, .. } = placement.params.kind {
-        let texture = |vk_format, layers, mips| Resource::Texture {
-            vk_format,
-            width: cells_x,
-            height: cells_y,
-            layers,
-            faces: 1,
-            mips,
-        };
-        let layers = placement.params.palette_len.div_ceil(4);
-        let mips = glint_formats::container::full_mip_count(cells_x, cells_y);
-        sections.push(Section::texture(
-            NOISE,
-            name,
-            texture(vk_format::R32G32B32A32_UINT, 1, 1),
-            bytemuck::cast_slice(&placement.noise).to_vec(),
-        ));
-        sections.push(Section::texture(
-            CLASSES,
-            name,
-            texture(vk_format::R8G8B8A8_UNORM, layers, mips),
-            placement.classes.clone(),
-        ));
+    let elements: &[[u32; 4]] = bytemuck::cast_slice(&tiles);
+    if header.few_tiles == 0 {
+        sections.push(table_section(TILES, name, vk_format::R32G32B32A32_UINT, elements));
+    }
+    sections.push(match &blocks {
+        Some(blocks) => table_section(DENSITY, name, vk_format::R32G32B32A32_UINT, &blocks.blocks),
+        None => {
+            let mut words = maps.density.clone();
+            words.resize(words.len().next_multiple_of(4), 0);
+            table_section(DENSITY, name, vk_format::R32_UINT, &bytemuck::pod_collect_to_vec::<u8, u32>(&words))
+        }
+    });
+    let normals = bytemuck::cast_slice(&maps.normals).to_vec();
+    sections.push(Section::texture(NORMALS, name, maps.params.normals_resource(), normals));
+    sections.push(Section::parameters(PLACEMENT, name, &placement.params));
+    if let PlacementKind::Stochastic { cells_x, .. } = placement.params.kind {
+        let noise = bytemuck::cast_slice(&placement.noise).to_vec();
+        sections.push(Section::texture(NOISE, name, noise_resource(cells_x), noise));
+        let shape = classes_resource(cells_x, placement.params.palette_len);
+        sections.push(Section::texture(CLASSES, name, shape, placement.classes.clone()));
     }
     for section in &mut sections {
         section.codec = codec;
@@ -63,27 +65,94 @@ pub fn to_sections(name: &str, material: &Material, codec: Codec) -> Vec<Section
     sections
 }
 
+/// Section [`UNIFORM`]: the header, then levels, palette, reach mask, and tiles if they are few; the rest is zero.
+fn uniform_bytes(material: &Material, header: &MaterialUniform, tiles: &[TileRecord]) -> Vec<u8> {
+    let mut bytes = bytemuck::bytes_of(header).to_vec();
+    for level in &material.maps.params.levels {
+        let record = [level.tile_texels, level.tiles_x, level.tiles_y, level.first_tile];
+        bytes.extend_from_slice(bytemuck::cast_slice(&record));
+    }
+    bytes.extend_from_slice(bytemuck::cast_slice(&material.placement.palette));
+    bytes.extend_from_slice(bytemuck::cast_slice(&reach::mask(material)));
+    if header.few_tiles == 1 {
+        bytes.extend_from_slice(bytemuck::cast_slice(tiles));
+    }
+    bytes.resize(UNIFORM_BYTES, 0);
+    bytes
+}
+
+/// The sections of a two-layer material under `name`; the materials of its layers have their own.
+pub fn layer_sections(name: &str, layers: &LayeredMaterial) -> Vec<Section> {
+    vec![Section::parameters(LAYERS, name, layers), Section::buffer(LAYERS_UNIFORM, name, &[LayersUniform::of(layers)])]
+}
+
+/// The first bytes of the uniform section of the material `name`: what a program of it may be made for.
+///
+/// # Errors
+/// A section that is missing or damaged.
+pub fn uniform(pack: &Pack, name: &str) -> Result<MaterialUniform> {
+    Ok(bytemuck::pod_read_unaligned(&uniform_of(pack, name)?[..size_of::<MaterialUniform>()]))
+}
+
+fn uniform_of(pack: &Pack, name: &str) -> Result<Vec<u8>> {
+    let bytes = bytes(pack, UNIFORM, name)?;
+    if bytes.len() != UNIFORM_BYTES {
+        let found = bytes.len();
+        let message = format!("section {UNIFORM} of '{name}': expected {UNIFORM_BYTES} bytes, found {found}");
+        return Err(BakeError::BadInput(message));
+    }
+    Ok(bytes)
+}
+
+/// Records of `T` from the record of 16 bytes with index `first` on.
+fn read<T: Pod>(records: &[u8], first: u32, count: usize) -> Option<Vec<T>> {
+    let from = first as usize * 16;
+    Some(bytemuck::pod_collect_to_vec(records.get(from..from.checked_add(count.checked_mul(size_of::<T>())?)?)?))
+}
+
 /// Reads the material `name`. The pack must have passed verification; errors name what is missing or damaged.
 pub fn from_pack(pack: &Pack, name: &str) -> Result<Material> {
     let maps_params: NdfMapsParams = parameters(pack, PARAMS, name)?;
     let placement_params: PlacementParams = parameters(pack, PLACEMENT, name)?;
+    let short = |kind: FourCc| BakeError::BadInput(format!("section {kind} of '{name}' ends too early"));
+    let uniform = uniform_of(pack, name)?;
+    let (header, from_uniform) = uniform.split_at(size_of::<MaterialUniform>());
+    let header: MaterialUniform = bytemuck::pod_read_unaligned(header);
+    let palette: Vec<TransformRecord> =
+        read(from_uniform, header.palette_records, placement_params.palette_len as usize).ok_or(short(UNIFORM))?;
+    let count = maps_params.tile_count() as usize;
+    let mut tiles: Vec<TileRecord> = if header.few_tiles == 1 {
+        read(from_uniform, header.tile_records, count).ok_or(short(UNIFORM))?
+    } else {
+        read(&bytes(pack, TILES, name)?, 0, count).ok_or(short(TILES))?
+    };
+    let density = if header.blocks == 1 {
+        blocks::texels_of(&records(pack, DENSITY, name)?, &mut tiles).ok_or(short(DENSITY))?
+    } else {
+        let end = |tile: &TileRecord| tile.first as usize + (tile.width() * tile.height()) as usize;
+        let texels = tiles.iter().map(end).max().unwrap_or(0);
+        let mut words = bytes(pack, DENSITY, name)?;
+        if words.len() < texels * maps_params.storage.texel_bytes() as usize {
+            return Err(short(DENSITY));
+        }
+        words.truncate(texels * maps_params.storage.texel_bytes() as usize);
+        words
+    };
     let stochastic = matches!(placement_params.kind, PlacementKind::Stochastic { .. });
     let (noise, classes) =
         if stochastic { (records(pack, NOISE, name)?, bytes(pack, CLASSES, name)?) } else { (Vec::new(), Vec::new()) };
     Ok(Material {
-        maps: BakedNdfMaps {
-            params: maps_params,
-            tiles: records(pack, TILES, name)?,
-            density: bytes(pack, DENSITY, name)?,
-            normals: records(pack, NORMALS, name)?,
-        },
-        placement: BakedPlacement { params: placement_params, palette: records(pack, PALETTE, name)?, noise, classes },
+        maps: BakedNdfMaps { params: maps_params, tiles, density, normals: records(pack, NORMALS, name)? },
+        placement: BakedPlacement { params: placement_params, palette, noise, classes },
     })
 }
 
-/// The layered materials of a pack.
-pub fn layered(pack: &Pack) -> Result<Vec<LayeredMaterial>> {
-    names_with(pack, LAYERS).into_iter().map(|name| parameters(pack, LAYERS, name)).collect()
+/// The layered materials of a pack, by the names of their sections.
+///
+/// # Errors
+/// Parameters that do not decode.
+pub fn layered(pack: &Pack) -> Result<Vec<(&str, LayeredMaterial)>> {
+    names_with(pack, LAYERS).into_iter().map(|name| Ok((name, parameters(pack, LAYERS, name)?))).collect()
 }
 
 /// Names of the materials of this method in a pack.

@@ -115,7 +115,7 @@ impl Material {
             visible < 1.0 && settings.splits > 0 && level > 0 && weight * settings.max_terms as f32 >= SPLIT_FROM;
         if !split {
             let tile = record.first_tile + index[1] * record.tiles_x + index[0];
-            return gathered.add_tile(TileTerm { tile, class: view.class, weight });
+            return gathered.add(TileTerm { tile, class: view.class, weight });
         }
         let settings = EvalSettings { splits: settings.splits - 1, ..settings };
         for child in [[0, 0], [1, 0], [0, 1], [1, 1]] {

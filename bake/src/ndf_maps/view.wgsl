@@ -1,9 +1,34 @@
-// What a part of the surface shows of one placed example under a footprint: which tiles or boxes, and their sum. Xing et al.
-// 2024, section 6.3; twin of glint-bake-core ndf_maps/{surface,ellipse}.rs.
+// What a part of the surface shows of one placed example under a footprint: which tiles or boxes, and their sum. Xing et al. 2024,
+// section 6.3; twin of view.rs. The CPU walks tiles by two loops in each other; here one loop steps from tile to tile, so that
+// pixels in step wait for each other once.
 
 #import ndf_maps::ellipse
-#import ndf_maps::tiles
-#import ndf_maps::lobes
+#import ndf_maps::eval
+
+// Edge, in example texels, of the boxes that are seen as lobes, at most.
+const GLINT_NDF_LOBE_TEXELS: f32 = 1.0;
+// Pieces under a footprint that is widened by their own size, at most, relative to max_terms.
+const GLINT_NDF_MOST_OF_TERMS: f32 = 4.0;
+// A tile that a sub-region cuts is split from this share on, relative to an even share of max_terms.
+const GLINT_NDF_SPLIT_FROM: f32 = 2.0;
+const GLINT_NDF_MAX_SPLITS: u32 = 6u;
+
+// What is visible of one placed example, and how the footprint lies on it; tiled examples are visible everywhere.
+struct GlintNdfView {
+    // The footprint in example texels.
+    ellipse: GlintNdfEllipse,
+    // The sub-region's middle in example texels.
+    middle: vec2f,
+    to_surface: vec4f,
+    // Surface texels an example texel, by area.
+    scale: f32,
+    // Half the sub-region's edge in surface texels.
+    half: f32,
+    // Half the box, in example texels, around a sub-region of half edge 1.
+    extent: vec2f,
+    // |determinant| of the matrix from projected normals on the surface to those in the example.
+    jacobian: f32,
+}
 
 // How much of a piece of `edge` around x lies in the sub-region, as if it were a box along the surface's axes.
 fn glint_ndf_visible(view: GlintNdfView, x: vec2f, edge: f32) -> f32 {
@@ -25,11 +50,6 @@ struct GlintNdfDetail {
     edge: f32,
 }
 
-// The largest power of two up to x > 0.
-fn glint_ndf_power_below(x: f32) -> f32 {
-    return bitcast<f32>(bitcast<u32>(x) & 0x7f800000u);
-}
-
 // The coarsest tiles or boxes that resolve a footprint in the example. Tiles of a level are twice as large as those before.
 fn glint_ndf_detail(
     material: GlintNdfMaterial,
@@ -39,9 +59,9 @@ fn glint_ndf_detail(
     // Long thin footprints take coarser pieces rather than more than max_terms of them.
     let area = max(ellipse.minor, GLINT_NDF_FINEST_TEXELS) * ellipse.major;
     let least = 2.0 * GLINT_NDF_REACH * sqrt(area / f32(settings.max_terms));
-    // Edges are powers of two: the largest up to tile_sigmas, then coarser ones until they are few.
-    let finest = f32(glint_ndf_record(material.level_records).x);
-    var edge = glint_ndf_power_below(settings.tile_sigmas * ellipse.minor);
+    // Edges are powers of two: the largest up to tile_sigmas, by its exponent, then coarser ones until they are few.
+    let finest = f32(glint_ndf_record(material.layer, 0u).x);
+    var edge = bitcast<f32>(bitcast<u32>(settings.tile_sigmas * ellipse.minor) & 0x7f800000u);
     if edge < finest && glint_ndf_few(ellipse, settings, least, GLINT_NDF_LOBE_TEXELS) {
         edge = GLINT_NDF_LOBE_TEXELS;
         for (var k = 0; k < 12; k++) {
@@ -81,7 +101,7 @@ fn glint_ndf_visible_tile(
     var depth = 0u;
     var at = index;
     for (var visit = 0u; visit < 8192u; visit++) {
-        let record = glint_ndf_record(material.level_records + level);
+        let record = glint_ndf_record(material.layer, level);
         var split = false;
         if all(at < record.yz) {
             let low = period + vec2f(at) * f32(record.x);
@@ -230,7 +250,7 @@ fn glint_ndf_tiles(
     s: vec2f,
     level: u32,
 ) -> GlintNdfSum {
-    let record = glint_ndf_record(material.level_records + level);
+    let record = glint_ndf_record(material.layer, level);
     let range = glint_ndf_range(view, record);
     var walk: GlintNdfWalk;
     walk.row = glint_ndf_slot_at(range.low.y, record.z, f32(material.size.y), f32(record.x));
@@ -322,12 +342,12 @@ fn glint_ndf_boxes(
 
 // The example point `local` as one lobe of no extent, seen through a palette entry.
 fn glint_ndf_point(material: GlintNdfMaterial, class_index: u32, local: vec2f, surface_s: vec2f) -> GlintNdfSum {
-    let to_local = bitcast<vec4f>(glint_ndf_record(material.palette_records + 2u * class_index + 1u));
+    let to_local = bitcast<vec4f>(glint_ndf_record(material.layer, material.palette_records + 2u * class_index + 1u));
     let s = glint_ndf_apply(to_local, surface_s);
     let density = glint_ndf_lobe_density(material, local, 0.0, vec2f(0.0), s);
     return GlintNdfSum(abs(glint_ndf_determinant(to_local)) * density, 1.0, 1.0);
 }
 
 fn glint_ndf_top_tile(material: GlintNdfMaterial) -> u32 {
-    return glint_ndf_record(material.level_records + material.levels - 1u).w;
+    return glint_ndf_record(material.layer, material.levels - 1u).w;
 }

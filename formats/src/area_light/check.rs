@@ -1,7 +1,8 @@
 //! Checks the contents of area-light sections: what a shader relies on when it reads them.
 
 use crate::area_light::{
-    AreaLightParams, INVERSE, MAX_TEXTURE_SIZE, NORMALS, PARAMS, ROUGHNESS, TABLE_SIZE, TABLE_VK_FORMAT, TERMS,
+    AreaLightParams, AreaLightUniform, INVERSE, MAX_TEXTURE_SIZE, NORMALS, PARAMS, ROUGHNESS, TABLE_SIZE,
+    TABLE_VK_FORMAT, TERMS, UNIFORM,
 };
 use crate::bytes::f16_at;
 use crate::container::{Resource, full_mip_count};
@@ -18,15 +19,19 @@ pub(crate) fn check(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
     for section in sections.of_kind(PARAMS) {
         check_material(sections, section, issues);
     }
-    sections.report_orphans(&[NORMALS, ROUGHNESS, INVERSE, TERMS], PARAMS, issues);
+    sections.report_orphans(&[UNIFORM, NORMALS, ROUGHNESS, INVERSE, TERMS], PARAMS, issues);
 }
 
 fn check_material(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec<Issue>) {
-    let [normals, inverse, terms] = [NORMALS, INVERSE, TERMS].map(|kind| sections.need(kind, section, issues));
+    let [uniform, normals, inverse, terms] =
+        [UNIFORM, NORMALS, INVERSE, TERMS].map(|kind| sections.need(kind, section, issues));
     let Some(params) = section.parameters::<AreaLightParams>(issues) else { return };
     if let Err(why) = check_parameters(&params) {
         issues.push(section.error(IssueCode::AreaLightParameters, why));
         return;
+    }
+    if let Some(uniform) = uniform {
+        check_uniform(uniform, &params, issues);
     }
     let shape = texture(params.storage.vk_format(), params.width, params.height);
     if let Some(normals) = normals
@@ -58,6 +63,19 @@ fn check_material(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec
         {
             check_table(found, fault, issues);
         }
+    }
+}
+
+fn check_uniform(uniform: Loaded<'_>, params: &AreaLightParams, issues: &mut Vec<Issue>) {
+    let resource = Resource::Buffer { stride: size_of::<AreaLightUniform>() as u32, count: 1 };
+    if !uniform.expect(IssueCode::AreaLightShape, resource, issues) {
+        return;
+    }
+    let expected = params.uniform();
+    if uniform.payload != bytemuck::bytes_of(&expected) {
+        let found: AreaLightUniform = bytemuck::pod_read_unaligned(uniform.payload);
+        let message = format!("expected what follows from the parameters, {expected:?}, found {found:?}");
+        issues.push(uniform.error(IssueCode::AreaLightUniform, message));
     }
 }
 

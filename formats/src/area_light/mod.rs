@@ -5,14 +5,18 @@
 
 pub(crate) mod check;
 
+use crate::binding::{Binding, View};
 use crate::bytes::f16_at;
-use crate::container::{FourCc, KnownKind};
+use crate::container::{FourCc, KnownKind, full_mip_count};
 use crate::vk_format;
 use crate::wrap::Wrap;
+use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of an area-light material: [`AreaLightParams`], bincode.
 pub const PARAMS: FourCc = FourCc(*b"ALPP");
+/// What a shader binds as uniforms: buffer of one [`AreaLightUniform`].
+pub const UNIFORM: FourCc = FourCc(*b"ALUB");
 /// Averaged normals: texture of the format of [`NormalStorage`], the full mip chain of the map.
 ///
 /// x, y, z are the mean normal over the texel, +X right, +Y up, not renormalised: 1 less their length is how far the
@@ -32,17 +36,48 @@ pub const TERMS: FourCc = FourCc(*b"ALLT");
 /// The kinds of sections of this method.
 pub(crate) const KINDS: &[KnownKind] = &[
     KnownKind::first(PARAMS, "area light parameters"),
+    KnownKind::first(UNIFORM, "area light uniforms"),
     KnownKind::first(NORMALS, "area light normals"),
     KnownKind::first(ROUGHNESS, "area light roughness"),
     KnownKind::first(INVERSE, "LTC inverse matrices"),
     KnownKind::first(TERMS, "LTC terms"),
 ];
+/// How a material is bound. An isotropic one has no [`ROUGHNESS`].
+pub const BINDINGS: &[Binding] = &[
+    Binding::Uniform(UNIFORM),
+    Binding::Texture(NORMALS, View::Float2d),
+    Binding::Texture(ROUGHNESS, View::Float2d),
+    Binding::Texture(INVERSE, View::Float2d),
+    Binding::Texture(TERMS, View::Float2d),
+    Binding::MapSampler,
+    Binding::ClampSampler,
+];
 /// VkFormat of the LTC tables: R16G16B16A16_SFLOAT.
 pub const TABLE_VK_FORMAT: u32 = vk_format::R16G16B16A16_SFLOAT;
 /// Width and height of the LTC tables.
 pub const TABLE_SIZE: u32 = 64;
-/// Largest width or height of the map.
-pub const MAX_TEXTURE_SIZE: u32 = 16_384;
+/// Largest width or height of the first mip: what every WebGPU device offers.
+pub const MAX_TEXTURE_SIZE: u32 = 8192;
+
+/// What a shader binds as uniforms: `GlintAreaLightMaps` of `area_light::eval`, 32 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct AreaLightUniform {
+    /// Width and height of the first mip, in texels.
+    pub size: [f32; 2],
+    /// Number of mips.
+    pub mips: u32,
+    /// What lies beyond the edge: 0 repeats, 1 clamps.
+    pub wrap: u32,
+    /// 1 where there is roughness by direction, else 0.
+    pub anisotropic: u32,
+    /// 0.
+    pub unused_0: u32,
+    /// 0.
+    pub unused_1: u32,
+    /// 0.
+    pub unused_2: u32,
+}
 
 /// How normals and roughness are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -110,4 +145,22 @@ pub struct AreaLightParams {
     pub anisotropic: bool,
     /// Error as the bake measured it.
     pub measured: MeasuredError,
+}
+
+impl AreaLightParams {
+    /// The uniforms that go with these parameters.
+    pub fn uniform(&self) -> AreaLightUniform {
+        AreaLightUniform {
+            size: [self.width as f32, self.height as f32],
+            mips: full_mip_count(self.width, self.height),
+            wrap: match self.wrap {
+                Wrap::Repeat => 0,
+                Wrap::Clamp => 1,
+            },
+            anisotropic: u32::from(self.anisotropic),
+            unused_0: 0,
+            unused_1: 0,
+            unused_2: 0,
+        }
+    }
 }

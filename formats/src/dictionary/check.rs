@@ -1,8 +1,10 @@
-//! Checks the contents of dictionary sections: what a sampler relies on when it reads a marginal.
+//! Checks the contents of dictionary sections: what a shader relies on when it reads a marginal.
 
-use crate::bytes::f16_at;
+use crate::bytes::{f16_at, u16_at, u32_at};
 use crate::container::Resource;
-use crate::dictionary::{DictionaryParams, MAX_TEXTURE_SIZE, PARAMS, ROW_TOLERANCE, TABLE, TABLE_VK_FORMAT};
+use crate::dictionary::{
+    DictionaryParams, DictionaryUniform, MAX_TABLE_SIDE, MAX_TABLE_WORDS, PARAMS, ROW_TOLERANCE, TABLE, UNIFORM,
+};
 use crate::issue::{Issue, IssueCode};
 use crate::sections::{Loaded, Sections};
 
@@ -11,42 +13,58 @@ pub(crate) fn check(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
     for section in sections.of_kind(PARAMS) {
         check_dictionary(sections, section, issues);
     }
-    sections.report_orphans(&[TABLE], PARAMS, issues);
+    sections.report_orphans(&[UNIFORM, TABLE], PARAMS, issues);
 }
 
 fn check_dictionary(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec<Issue>) {
-    let table = sections.need(TABLE, section, issues);
+    let [uniform, table] = [UNIFORM, TABLE].map(|kind| sections.need(kind, section, issues));
     let Some(params) = section.parameters::<DictionaryParams>(issues) else { return };
     if let Err(why) = check_parameters(&params) {
         issues.push(section.error(IssueCode::DictionaryParameters, why));
         return;
     }
+    if let Some(uniform) = uniform {
+        check_uniform(uniform, &params, issues);
+    }
+    let words = Resource::Buffer { stride: 4, count: params.table_entries().next_multiple_of(4) };
     if let Some(table) = table
-        && table.expect(IssueCode::DictionaryShape, table_resource(&params), issues)
+        && table.expect(IssueCode::DictionaryShape, words, issues)
     {
-        check_rows(table, &params, issues);
+        check_table(table, &params, issues);
     }
 }
 
-fn table_resource(params: &DictionaryParams) -> Resource {
-    Resource::Texture {
-        vk_format: TABLE_VK_FORMAT,
-        width: params.entries,
-        height: params.levels * params.marginals,
-        layers: 1,
-        faces: 1,
-        mips: 1,
+fn check_uniform(uniform: Loaded<'_>, params: &DictionaryParams, issues: &mut Vec<Issue>) {
+    let resource = Resource::Buffer { stride: size_of::<DictionaryUniform>() as u32, count: 1 };
+    if !uniform.expect(IssueCode::DictionaryShape, resource, issues) {
+        return;
+    }
+    let expected = params.uniform();
+    if uniform.payload != bytemuck::bytes_of(&expected) {
+        let found: DictionaryUniform = bytemuck::pod_read_unaligned(uniform.payload);
+        let message = format!("expected what follows from the parameters, {expected:?}, found {found:?}");
+        issues.push(uniform.error(IssueCode::DictionaryUniform, message));
     }
 }
 
 fn check_parameters(params: &DictionaryParams) -> Result<(), String> {
     let rows = u64::from(params.marginals) * u64::from(params.levels);
     for (what, found) in [("rows", rows), ("entries", u64::from(params.entries))] {
-        if !(1..=u64::from(MAX_TEXTURE_SIZE)).contains(&found) {
-            return Err(format!("expected 1 to {MAX_TEXTURE_SIZE} {what}, found {found}"));
+        if !(1..=u64::from(MAX_TABLE_SIDE)).contains(&found) {
+            return Err(format!("expected 1 to {MAX_TABLE_SIDE} {what}, found {found}"));
         }
     }
-    let positive = [("roughness", params.alpha_dict), ("lobe deviation", params.lobe_std), ("domain", params.domain)];
+    if params.table_entries() > MAX_TABLE_WORDS {
+        return Err(format!(
+            "expected at most {MAX_TABLE_WORDS} entries of all rows, found {}",
+            params.table_entries()
+        ));
+    }
+    let positive = [
+        ("roughness", params.alpha_dict),
+        ("standard deviation of a lobe", params.lobe_std),
+        ("domain", params.domain),
+    ];
     for (what, found) in positive {
         if !(found > 0.0 && found.is_finite()) {
             return Err(format!("expected a positive {what}, found {found}"));
@@ -61,19 +79,31 @@ fn check_parameters(params: &DictionaryParams) -> Result<(), String> {
     Ok(())
 }
 
-/// Reports the first texel that is no density, else the first row whose integral over the whole line is not 1.
-fn check_rows(table: Loaded<'_>, params: &DictionaryParams, issues: &mut Vec<Issue>) {
+/// Reports the first entry that is no density or stands otherwise in the pair before it, else the first row whose integral over
+/// the whole line is not 1.
+fn check_table(table: Loaded<'_>, params: &DictionaryParams, issues: &mut Vec<Issue>) {
     let spacing = params.domain / f64::from(params.entries);
+    let (rows, end) = table.payload.split_at(4 * params.table_entries() as usize);
     let mut first_unequal = None;
-    for (row, bytes) in table.payload.chunks_exact(2 * params.entries as usize).enumerate() {
+    for (row, bytes) in rows.chunks_exact(4 * params.entries as usize).enumerate() {
+        let last = params.entries as usize - 1;
         let mut sum = 0.0;
-        for (texel, bytes) in bytes.chunks_exact(2).enumerate() {
-            let value = f64::from(f16_at(bytes, 0));
+        for entry in 0..=last {
+            let value = f64::from(f16_at(bytes, 4 * entry));
             if !(value >= 0.0 && value.is_finite()) {
                 let message = format!(
-                    "texel {texel} of row {row}: expected a finite density that is not negative, found {value}"
+                    "entry {entry} of row {row}: expected a finite density that is not negative, found {value}"
                 );
                 issues.push(table.error(IssueCode::DictionaryValue, message));
+                return;
+            }
+            let next = u16_at(bytes, 4 * last.min(entry + 1));
+            if u16_at(bytes, 4 * entry + 2) != next {
+                let word = u32_at(bytes, 4 * entry);
+                let message = format!(
+                    "entry {entry} of row {row}: expected the next one, {next:#06x}, in the upper half, found {word:#010x}"
+                );
+                issues.push(table.error(IssueCode::DictionaryPair, message));
                 return;
             }
             sum += value;
@@ -83,6 +113,9 @@ fn check_rows(table: Loaded<'_>, params: &DictionaryParams, issues: &mut Vec<Iss
             first_unequal =
                 Some(format!("row {row}: expected an integral within {ROW_TOLERANCE} of 1, found {integral}"));
         }
+    }
+    if end.iter().any(|byte| *byte != 0) {
+        issues.push(table.error(IssueCode::DictionaryPair, "expected zeros after the last row"));
     }
     issues.extend(first_unequal.map(|why| table.error(IssueCode::DictionaryRow, why)));
 }

@@ -1,32 +1,63 @@
-//! Typed sections of the slope dictionary: parameters, and one texture with all marginals of all levels.
+//! Typed sections of the slope dictionary: parameters, and uniforms, and one table with all marginals of all levels.
 //!
 //! Method: Chermain et al. 2020, sections 4 and 7.3; what we store differs from the paper as `docs/methods/dictionary.md` says.
 //! A dictionary is independent of roughness, density and surface: one serves a whole scene.
 
 pub(crate) mod check;
 
+use crate::binding::Binding;
 use crate::container::{FourCc, KnownKind};
-use crate::vk_format;
+use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of a dictionary: [`DictionaryParams`], bincode.
 pub const PARAMS: FourCc = FourCc(*b"SDPP");
-/// All marginals: texture of [`TABLE_VK_FORMAT`], `entries` × (`levels` · `marginals`) texels, one mip, one layer.
+/// What a shader binds as uniforms: buffer of one [`DictionaryUniform`].
+pub const UNIFORM: FourCc = FourCc(*b"SDUB");
+/// All marginals: buffer of `u32` words, `levels` · `marginals` rows of `entries`, then zeros up to a multiple of four words.
 ///
-/// Row `level · marginals + marginal` is P(x) at slopes x = (b + ½) · domain / entries for texel b, to be read with
-/// linear filtering and clamp to edge at u = x / domain, for x from 0 to `domain`. P is even, and zero beyond `domain`.
+/// Word b of row `level · marginals + marginal` holds two half floats: in its lower half P(x) at the slope
+/// x = (b + ½) · domain / entries, in its upper half that of word b + 1, or its own where b is the last. One load is all that
+/// linear filtering with clamp to edge needs, for x from 0 to `domain`. P is even, and zero beyond `domain`.
 pub const TABLE: FourCc = FourCc(*b"SDTB");
 
 /// The kinds of sections of this method.
-pub(crate) const KINDS: &[KnownKind] =
-    &[KnownKind::first(PARAMS, "dictionary parameters"), KnownKind::first(TABLE, "dictionary table")];
-/// VkFormat of the table: R16_SFLOAT.
-pub const TABLE_VK_FORMAT: u32 = vk_format::R16_SFLOAT;
-/// Largest width or height of the table: what every WebGPU device offers.
-pub const MAX_TEXTURE_SIZE: u32 = 8192;
+pub(crate) const KINDS: &[KnownKind] = &[
+    KnownKind::first(PARAMS, "dictionary parameters"),
+    KnownKind::first(UNIFORM, "dictionary uniforms"),
+    KnownKind::first(TABLE, "dictionary table"),
+];
+/// How a dictionary is bound. The colours of glints belong to the material, which a host sets; the next binding is theirs.
+pub const BINDINGS: &[Binding] = &[Binding::Uniform(UNIFORM), Binding::Storage(TABLE)];
+/// Largest number of rows, and of entries of a row.
+pub const MAX_TABLE_SIDE: u32 = 8192;
+/// Largest number of words of the table, of 128 MiB: what every WebGPU device binds.
+pub const MAX_TABLE_WORDS: u64 = 1 << 25;
 /// Largest |2 ∫ P − 1| of a row, the integral from 0 to the end of the domain as linear filtering takes it. Half floats
 /// of few entries cannot do better; a larger dictionary is nearer by orders, see [`MeasuredError::normalisation`].
 pub const ROW_TOLERANCE: f64 = 1e-3;
+
+/// What a shader binds as uniforms: `GlintDictionaryTables` of `dictionary::eval`, 32 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct DictionaryUniform {
+    /// Number of marginals N.
+    pub marginals: u32,
+    /// Number of levels.
+    pub levels: u32,
+    /// Entries of a row.
+    pub entries: u32,
+    /// Roughness α of the Beckmann target of the tables.
+    pub alpha_dict: f32,
+    /// Slope at which the tables end.
+    pub domain: f32,
+    /// `entries / domain`.
+    pub inv_spacing: f32,
+    /// Slope area that a two-dimensional lobe fills, 4π · lobe_std².
+    pub lobe_area: f32,
+    /// 0.
+    pub unused: u32,
+}
 
 /// Error of the stored half floats, read as linear filtering reads them, against the target and against exact lobes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -58,4 +89,26 @@ pub struct DictionaryParams {
     pub seed: u64,
     /// Error as the bake measured it.
     pub measured: MeasuredError,
+}
+
+impl DictionaryParams {
+    /// The uniforms that go with these parameters.
+    pub fn uniform(&self) -> DictionaryUniform {
+        let (alpha_dict, domain) = (self.alpha_dict as f32, self.domain as f32);
+        DictionaryUniform {
+            marginals: self.marginals,
+            levels: self.levels,
+            entries: self.entries,
+            alpha_dict,
+            domain,
+            inv_spacing: self.entries as f32 / domain,
+            lobe_area: (4.0 * std::f64::consts::PI * self.lobe_std * self.lobe_std) as f32,
+            unused: 0,
+        }
+    }
+
+    /// Entries of all rows; the table has as many words, and zeros up to a multiple of four.
+    pub fn table_entries(&self) -> u64 {
+        u64::from(self.marginals) * u64::from(self.levels) * u64::from(self.entries)
+    }
 }

@@ -146,7 +146,7 @@ fn check_level(level: &LobeLevel, grid: (u32, u32), first: u64, finer: Option<u3
     }
     for [low, high] in [level.position_sigma, level.residual_sigma] {
         if !(low > 0.0 && low <= high && high <= low * (1.001 * MAX_SIGMA_RATIO) && high.is_finite()) {
-            return Err(format!("expected a range of positive deviations, found {low} to {high}"));
+            return Err(format!("expected a range of positive standard deviations, found {low} to {high}"));
         }
     }
     if !(level.weight_scale > 0.0 && level.weight_scale.is_finite()) {
@@ -223,10 +223,10 @@ fn packed_fault(lobe: &PackedLobe) -> (bool, Option<&'static str>) {
 fn half_fault(lobe: &HalfLobe) -> (bool, Option<&'static str>) {
     let float = |bits: u16| f16::from_bits(bits).to_f32();
     let weight = float(lobe.weight);
-    let deviations = lobe.position_sigma.iter().chain(&lobe.residual_sigma);
-    let positive = deviations.chain([&lobe.weight]).all(|bits| float(*bits) >= 0.0 && float(*bits).is_finite());
+    let sigmas = lobe.position_sigma.iter().chain(&lobe.residual_sigma);
+    let positive = sigmas.chain([&lobe.weight]).all(|bits| float(*bits) >= 0.0 && float(*bits).is_finite());
     let why = if !positive {
-        Some("a weight and deviations that are finite and not negative")
+        Some("a weight and standard deviations that are finite and not negative")
     } else if !lobe.jacobian.iter().all(|bits| float(*bits).is_finite()) {
         Some("a finite Jacobian")
     } else if lobe.correlation.contains(&i16::MIN) {

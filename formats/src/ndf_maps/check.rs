@@ -1,81 +1,179 @@
 //! Checks the contents of NDF map, placement and layer sections: what an evaluator relies on when it indexes tiles, density
 //! and transforms.
 
+use crate::binding::TABLE_WIDTH;
 use crate::bytes::{f16_at, f32_at};
-use crate::container::{Resource, full_mip_count};
+use crate::container::Resource;
 use crate::issue::{Issue, IssueCode};
 use crate::ndf_maps::{
-    CLASSES, DENSITY, DensityStorage, LAYERS, LayeredMaterial, Level, NOISE, NORMALS, NdfMapsParams, NoiseTexel,
-    PALETTE, PARAMS, PLACEMENT, PlacementKind, PlacementParams, TILES, TileRecord, TransformRecord,
+    CLASSES, DENSITY, DensityStorage, LAYERS, LAYERS_UNIFORM, LayeredMaterial, LayersUniform, Level, MAX_EDGE,
+    MAX_PALETTE, MaterialUniform, NOISE, NORMALS, NdfMapsParams, NoiseTexel, PARAMS, PLACEMENT, PlacementKind,
+    PlacementParams, REACH_CELLS, TILES, TileRecord, TransformRecord, UNIFORM, UNIFORM_BYTES, classes_resource,
+    few_tiles, noise_resource, table,
 };
 use crate::sections::{Loaded, Sections};
 use crate::vk_format;
 
-/// Most entries of a palette: the noise map has 8 bits for an index.
-const MAX_PALETTE: u32 = 256;
 /// Owners are cells of a 3 × 3 neighbourhood.
 const MAX_OWNER: u32 = 8;
+/// Bytes of a record of the uniform, or of an element of the tables of tiles and blocks.
+const RECORD: usize = 16;
 
-/// Checks every example's NDF maps.
+/// Checks every example's NDF maps and placement, and every layered material.
 pub(crate) fn check(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
     for section in sections.of_kind(PARAMS) {
-        check_example(sections, section, issues);
+        check_material(sections, section, issues);
     }
-    sections.report_orphans(&[TILES, DENSITY, NORMALS, PLACEMENT], PARAMS, issues);
-    check_placements(sections, issues);
+    sections.report_orphans(&[UNIFORM, TILES, DENSITY, NORMALS, PLACEMENT], PARAMS, issues);
+    sections.report_orphans(&[NOISE, CLASSES], PLACEMENT, issues);
+    for section in sections.of_kind(LAYERS) {
+        let uniform = sections.need(LAYERS_UNIFORM, section, issues);
+        if let Some(layers) = section.parameters::<LayeredMaterial>(issues) {
+            check_layers(sections, section, &layers, uniform, issues);
+        }
+    }
+    sections.report_orphans(&[LAYERS_UNIFORM], LAYERS, issues);
 }
 
-fn check_example(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec<Issue>) {
-    let tiles = sections.need(TILES, section, issues);
+fn check_material(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec<Issue>) {
+    let uniform = sections.need(UNIFORM, section, issues);
     let density = sections.need(DENSITY, section, issues);
     let normals = sections.need(NORMALS, section, issues);
+    let placement = sections.need(PLACEMENT, section, issues);
+    let placed = placement.and_then(|placement| check_placement(sections, placement, issues));
     let Some(params) = section.parameters::<NdfMapsParams>(issues) else { return };
     if let Err(why) = check_parameters(&params) {
         issues.push(section.error(IssueCode::NdfParameters, why));
         return;
     }
-    let expected_tiles = match check_levels(&params) {
-        Ok(tiles) => Some(tiles),
-        Err(why) => {
-            issues.push(section.error(IssueCode::NdfLevels, why));
-            None
-        }
-    };
     if let Some(normals) = normals {
-        normals.expect(IssueCode::WrongDescriptor, normals_resource(&params), issues);
+        normals.expect(IssueCode::WrongDescriptor, params.normals_resource(), issues);
     }
-    let texels = density.and_then(|density| density.buffer_count(params.storage.texel_bytes(), issues));
-    if let Some(density) = density
-        && texels.is_some()
-        && let Some(why) = first_bad_density(density.payload, params.storage)
-    {
-        issues.push(density.error(IssueCode::NdfDensityValue, why));
+    let texels = density.and_then(|density| check_density(density, params.storage, issues));
+    if let Err(why) = check_levels(&params) {
+        issues.push(section.error(IssueCode::NdfLevels, why));
+        return;
     }
-    let Some(tiles) = tiles else { return };
-    let Some(count) = tiles.buffer_count(size_of::<TileRecord>() as u32, issues) else { return };
-    if let Some(expected) = expected_tiles
-        && expected != count
-    {
-        let message = format!("the levels have {expected} tiles, the section has {count}");
-        issues.push(tiles.error(IssueCode::NdfTileCount, message));
+    let (Some(uniform), Some(placed)) = (uniform, placed) else { return };
+    let expected = Resource::Buffer { stride: UNIFORM_BYTES as u32, count: 1 };
+    if !uniform.expect(IssueCode::WrongDescriptor, expected, issues) {
+        return;
     }
-    check_tiles(tiles, texels, issues);
+    let table = check_tile_table(sections, section, &params, &placed, issues);
+    check_uniform(uniform, &params, &placed, texels.as_ref().map(|texels| texels.in_blocks), issues);
+    let count = params.tile_count() as usize;
+    let tiles = if few_tiles(&params, &placed) {
+        let header = MaterialUniform::new(&params, &placed, false, 0.0);
+        let first = size_of::<MaterialUniform>() + header.tile_records as usize * RECORD;
+        Some((uniform, &uniform.payload[first..first + count * size_of::<TileRecord>()]))
+    } else {
+        table.map(|table| (table, &table.payload[..count * size_of::<TileRecord>()]))
+    };
+    if let Some((section, tiles)) = tiles {
+        check_tiles(section, tiles, texels.as_ref(), issues);
+    }
 }
 
-fn normals_resource(params: &NdfMapsParams) -> Resource {
-    Resource::Texture {
-        vk_format: vk_format::R16G16_SNORM,
-        width: params.width,
-        height: params.height,
-        layers: 1,
-        faces: 1,
-        mips: 1,
+/// What a density section holds.
+struct Texels {
+    in_blocks: bool,
+    /// Texels, or blocks, that its table has room for.
+    count: u64,
+}
+
+/// A table of blocks or words with densities that are numbers.
+fn check_density(density: Loaded<'_>, storage: DensityStorage, issues: &mut Vec<Issue>) -> Option<Texels> {
+    let bytes = density.payload.len() as u64;
+    let in_blocks = matches!(
+        density.entry.resource,
+        Resource::Texture { vk_format: vk_format::R32G32B32A32_UINT, .. } if storage == DensityStorage::SqrtU8
+    );
+    let (format, element) = if in_blocks { (vk_format::R32G32B32A32_UINT, 16) } else { (vk_format::R32_UINT, 4) };
+    if !density.expect(IssueCode::WrongDescriptor, table(format, bytes / element), issues) {
+        return None;
+    }
+    if let Some(why) = first_bad_density(density.payload, storage) {
+        issues.push(density.error(IssueCode::NdfDensityValue, why));
+    }
+    let count = if in_blocks { bytes / element } else { bytes / u64::from(storage.texel_bytes()) };
+    Some(Texels { in_blocks, count })
+}
+
+/// The table of tiles, which is there where they do not fit among the records.
+fn check_tile_table<'a>(
+    sections: &'a Sections<'_>,
+    section: Loaded<'_>,
+    params: &NdfMapsParams,
+    placed: &PlacementParams,
+    issues: &mut Vec<Issue>,
+) -> Option<Loaded<'a>> {
+    if few_tiles(params, placed) {
+        if let Some(tiles) = sections.get(TILES, &section.entry.name) {
+            let message = format!("expected no table of {} tiles, which fit in {UNIFORM}", params.tile_count());
+            issues.push(tiles.error(IssueCode::NdfTileCount, message));
+        }
+        return None;
+    }
+    let tiles = sections.need(TILES, section, issues)?;
+    let expected = table(vk_format::R32G32B32A32_UINT, 2 * params.tile_count());
+    tiles.expect(IssueCode::NdfTileCount, expected, issues).then_some(tiles)
+}
+
+/// The uniform says what the parameters say, and holds a palette of usable transforms.
+fn check_uniform(
+    uniform: Loaded<'_>,
+    params: &NdfMapsParams,
+    placed: &PlacementParams,
+    in_blocks: Option<bool>,
+    issues: &mut Vec<Issue>,
+) {
+    let (header, records) = uniform.payload.split_at(size_of::<MaterialUniform>());
+    let found: MaterialUniform = bytemuck::pod_read_unaligned(header);
+    let mut differs = |message: String| issues.push(uniform.error(IssueCode::NdfUniform, message));
+    let expected = MaterialUniform::new(params, placed, in_blocks.unwrap_or(found.blocks == 1), found.most_texels);
+    if found != expected {
+        return differs(format!("expected {expected:?}, found {found:?}"));
+    }
+    for (i, (level, record)) in params.levels.iter().zip(records.chunks_exact(RECORD)).enumerate() {
+        let expected = [level.tile_texels, level.tiles_x, level.tiles_y, level.first_tile];
+        let found: [u32; 4] = bytemuck::pod_read_unaligned(record);
+        if found != expected {
+            return differs(format!("level {i}: expected {expected:?}, found {found:?}"));
+        }
+    }
+    let first = found.palette_records as usize * RECORD;
+    let palette = &records[first..found.reach_records as usize * RECORD];
+    let mut most = 0.0f64;
+    for (i, bytes) in palette.chunks_exact(size_of::<TransformRecord>()).enumerate() {
+        let transform: TransformRecord = bytemuck::pod_read_unaligned(bytes);
+        if !(is_usable(transform.position_to_local) && is_usable(transform.normal_to_local)) {
+            let message = format!("entry {i}: expected finite matrices that can be inverted, found {transform:?}");
+            issues.push(uniform.error(IssueCode::PaletteValue, message));
+            return;
+        }
+        most = most.max(determinant(transform.position_to_local).abs().sqrt());
+    }
+    if !((f64::from(found.most_texels) - most).abs() <= 1e-3 * most) {
+        return differs(format!("expected {most} example texels a surface texel, found {}", found.most_texels));
+    }
+    let tiles = if found.few_tiles == 1 { 2 * params.tile_count() as usize } else { 0 };
+    let used = (found.reach_records as usize + REACH_CELLS + tiles) * RECORD;
+    if let Some(at) = records[used..].iter().position(|byte| *byte != 0) {
+        differs(format!(
+            "expected zeros after the records, found {} at byte {}",
+            records[used + at],
+            header.len() + used + at
+        ));
     }
 }
 
 fn check_parameters(params: &NdfMapsParams) -> Result<(), String> {
     if params.width == 0 || params.height == 0 {
         return Err(format!("expected at least one texel, found {} × {}", params.width, params.height));
+    }
+    if params.width.max(params.height) > MAX_EDGE {
+        let (width, height) = (params.width, params.height);
+        return Err(format!("expected at most {MAX_EDGE} texels along an edge, found {width} × {height}"));
     }
     if !(params.intrinsic_roughness > 0.0 && params.intrinsic_roughness.is_finite()) {
         return Err(format!("expected a positive intrinsic roughness, found {}", params.intrinsic_roughness));
@@ -89,8 +187,8 @@ fn check_parameters(params: &NdfMapsParams) -> Result<(), String> {
     Ok(())
 }
 
-/// Levels cover the example and follow each other; returns the number of tiles they have together.
-fn check_levels(params: &NdfMapsParams) -> Result<u64, String> {
+/// Levels cover the example and follow each other, and their tiles fit in a table.
+fn check_levels(params: &NdfMapsParams) -> Result<(), String> {
     let mut tiles = 0u64;
     let mut finer = 0;
     for (i, level) in params.levels.iter().enumerate() {
@@ -103,7 +201,10 @@ fn check_levels(params: &NdfMapsParams) -> Result<u64, String> {
         Some(last) if (last.tiles_x, last.tiles_y) != (1, 1) => {
             Err(format!("expected one tile in the last level, found {} × {}", last.tiles_x, last.tiles_y))
         }
-        Some(_) => Ok(tiles),
+        Some(_) if tiles.saturating_mul(2) > u64::from(TABLE_WIDTH) * u64::from(MAX_EDGE) => {
+            Err(format!("expected tiles that fit in a table, found {tiles}"))
+        }
+        Some(_) => Ok(()),
     }
 }
 
@@ -124,20 +225,21 @@ fn check_level(params: &NdfMapsParams, level: &Level, first_tile: u64, finer: u3
 }
 
 /// Reports the first tile that is wrong in each way; `texels` is `None` when the density is not known.
-fn check_tiles(section: Loaded<'_>, texels: Option<u64>, issues: &mut Vec<Issue>) {
+fn check_tiles(section: Loaded<'_>, tiles: &[u8], texels: Option<&Texels>, issues: &mut Vec<Issue>) {
     let mut outside = None;
     let mut value = None;
-    for (i, bytes) in section.payload.chunks_exact(size_of::<TileRecord>()).enumerate() {
+    for (i, bytes) in tiles.chunks_exact(size_of::<TileRecord>()).enumerate() {
         let tile: TileRecord = bytemuck::pod_read_unaligned(bytes);
         if value.is_none() && !tile_values_are_right(&tile) {
             value = Some(format!("tile {i}: expected finite, positive values and at least one texel, found {tile:?}"));
         }
-        let end = u64::from(tile.texel_offset) + u64::from(tile.width()) * u64::from(tile.height());
-        if let Some(texels) = texels
-            && outside.is_none()
-            && end > texels
-        {
-            outside = Some(format!("tile {i} ends at texel {end}, the density has {texels} texels"));
+        let Some(texels) = texels else { continue };
+        let (width, height) = (u64::from(tile.width()), u64::from(tile.height()));
+        let (pieces, what) =
+            if texels.in_blocks { ((width + 2) * (height + 2), "block") } else { (width * height, "texel") };
+        let end = u64::from(tile.first) + pieces;
+        if outside.is_none() && end > texels.count {
+            outside = Some(format!("tile {i} ends at {what} {end}, the density has {}", texels.count));
         }
     }
     issues.extend(value.map(|why| section.error(IssueCode::NdfTileValue, why)));
@@ -166,104 +268,64 @@ fn first_bad_density(bytes: &[u8], storage: DensityStorage) -> Option<String> {
     Some(format!("texel {i}: expected a finite density that is not negative, found {found}"))
 }
 
-/// Checks every placement and every layered material: indices lie in range before a shader follows them.
-fn check_placements(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
-    for section in sections.of_kind(PLACEMENT) {
-        check_placement(sections, section, issues);
+/// A placement: indices lie in range before a shader follows them. Returns it if maps can be checked with it.
+fn check_placement(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec<Issue>) -> Option<PlacementParams> {
+    let params = section.parameters::<PlacementParams>(issues)?;
+    if !(1..=MAX_PALETTE).contains(&params.palette_len) {
+        let message = format!("expected 1 to {MAX_PALETTE} entries, found {}", params.palette_len);
+        issues.push(section.error(IssueCode::PaletteLength, message));
+        return None;
     }
-    sections.report_orphans(&[PALETTE, NOISE, CLASSES], PLACEMENT, issues);
-    for section in sections.of_kind(LAYERS) {
-        if let Some(layers) = section.parameters::<LayeredMaterial>(issues) {
-            check_layers(sections, section, &layers, issues);
-        }
-    }
-}
-
-fn check_placement(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec<Issue>) {
-    let palette = sections.need(PALETTE, section, issues);
-    let Some(params) = section.parameters::<PlacementParams>(issues) else { return };
-    if let Some(palette) = palette {
-        check_palette(palette, params.palette_len, issues);
-    }
-    let PlacementKind::Stochastic { cells_x, cells_y, cell_texels, .. } = params.kind else { return };
+    let PlacementKind::Stochastic { cells_x, cells_y, cell_texels, .. } = params.kind else { return Some(params) };
     let noise = sections.need(NOISE, section, issues);
     let classes = sections.need(CLASSES, section, issues);
-    if !(cells_x.is_power_of_two() && cells_y.is_power_of_two() && cell_texels.is_finite() && cell_texels > 0.0) {
+    let is_grid = cells_x == cells_y && cells_x.is_power_of_two() && cells_x <= MAX_EDGE / 2;
+    if !(is_grid && cell_texels.is_finite() && cell_texels > 0.0) {
         let message = format!(
-            "expected powers of two and a positive edge, found {cells_x} × {cells_y} cells of {cell_texels} texels"
+            "expected a square grid of a power of two, {} at most, and a positive edge, found {cells_x} × {cells_y} cells of \
+             {cell_texels} texels",
+            MAX_EDGE / 2
         );
         issues.push(section.error(IssueCode::PlacementGrid, message));
-        return;
+        return None;
     }
     if let Some(noise) = noise
-        && noise.expect(IssueCode::NoiseDescriptor, noise_resource(cells_x, cells_y), issues)
+        && noise.expect(IssueCode::NoiseDescriptor, noise_resource(cells_x), issues)
     {
         check_noise(noise, params.palette_len, issues);
     }
     if let Some(classes) = classes {
-        classes.expect(IssueCode::ClassesDescriptor, classes_resource(cells_x, cells_y, params.palette_len), issues);
+        classes.expect(IssueCode::ClassesDescriptor, classes_resource(cells_x, params.palette_len), issues);
     }
-}
-
-fn noise_resource(width: u32, height: u32) -> Resource {
-    Resource::Texture { vk_format: vk_format::R32G32B32A32_UINT, width, height, layers: 1, faces: 1, mips: 1 }
-}
-
-fn classes_resource(width: u32, height: u32, palette_len: u32) -> Resource {
-    Resource::Texture {
-        vk_format: vk_format::R8G8B8A8_UNORM,
-        width,
-        height,
-        layers: palette_len.div_ceil(4),
-        faces: 1,
-        mips: full_mip_count(width, height),
-    }
-}
-
-fn check_palette(palette: Loaded<'_>, palette_len: u32, issues: &mut Vec<Issue>) {
-    let Some(count) = palette.buffer_count(size_of::<TransformRecord>() as u32, issues) else { return };
-    if palette_len == 0 || palette_len > MAX_PALETTE || count != u64::from(palette_len) {
-        let message = format!(
-            "expected 1 to {MAX_PALETTE} entries, as many as the parameters state, found {count} and {palette_len}"
-        );
-        issues.push(palette.error(IssueCode::PaletteLength, message));
-    }
-    for (i, bytes) in palette.payload.chunks_exact(size_of::<TransformRecord>()).enumerate() {
-        let transform: TransformRecord = bytemuck::pod_read_unaligned(bytes);
-        if !(is_usable(transform.position_to_local) && is_usable(transform.normal_to_local)) {
-            let message = format!("entry {i}: expected finite matrices that can be inverted, found {transform:?}");
-            issues.push(palette.error(IssueCode::PaletteValue, message));
-            return;
-        }
-    }
+    Some(params)
 }
 
 /// A 2 × 2 matrix that is finite and can be inverted.
 fn is_usable(m: [f32; 4]) -> bool {
-    let determinant = f64::from(m[0]) * f64::from(m[3]) - f64::from(m[1]) * f64::from(m[2]);
-    m.iter().all(|v| v.is_finite()) && determinant != 0.0
+    m.iter().all(|v| v.is_finite()) && determinant(m) != 0.0
 }
 
-/// Reports the first cell that is wrong in each way.
+fn determinant(m: [f32; 4]) -> f64 {
+    f64::from(m[0]) * f64::from(m[3]) - f64::from(m[1]) * f64::from(m[2])
+}
+
+/// Reports the first sub-region that is wrong in each way.
 fn check_noise(noise: Loaded<'_>, palette_len: u32, issues: &mut Vec<Issue>) {
     let mut class_issue = None;
     let mut owner_issue = None;
     let mut reserved_issue = None;
     for (i, bytes) in noise.payload.chunks_exact(size_of::<NoiseTexel>()).enumerate() {
         let texel: NoiseTexel = bytemuck::pod_read_unaligned(bytes);
-        let class = texel.class_and_owners & 0xff;
+        let class = texel.class();
         if class_issue.is_none() && class >= palette_len {
-            class_issue = Some(format!("cell {i}: expected a class below {palette_len}, found {class}"));
+            class_issue = Some(format!("sub-region {i}: expected a class below {palette_len}, found {class}"));
         }
-        for region in 0..4 {
-            let owner = texel.class_and_owners >> (16 + 4 * region) & 0xf;
-            if owner_issue.is_none() && owner > MAX_OWNER {
-                owner_issue =
-                    Some(format!("cell {i}, sub-region {region}: expected at most {MAX_OWNER}, found {owner}"));
-            }
+        let owner = texel.class_and_neighbour >> 16;
+        if owner_issue.is_none() && owner > MAX_OWNER {
+            owner_issue = Some(format!("sub-region {i}: expected at most {MAX_OWNER}, found {owner}"));
         }
-        if reserved_issue.is_none() && (texel.reserved != 0 || texel.class_and_owners & 0xff00 != 0) {
-            reserved_issue = Some(format!("cell {i}: expected zeros, found {texel:?}"));
+        if reserved_issue.is_none() && (texel.reserved != 0 || texel.class_and_neighbour & 0xff00 != 0) {
+            reserved_issue = Some(format!("sub-region {i}: expected zeros, found {texel:?}"));
         }
     }
     issues.extend(class_issue.map(|why| noise.error(IssueCode::NoiseClass, why)));
@@ -271,7 +333,13 @@ fn check_noise(noise: Loaded<'_>, palette_len: u32, issues: &mut Vec<Issue>) {
     issues.extend(reserved_issue.map(|why| noise.error(IssueCode::NoiseReserved, why)));
 }
 
-fn check_layers(sections: &Sections<'_>, section: Loaded<'_>, layers: &LayeredMaterial, issues: &mut Vec<Issue>) {
+fn check_layers(
+    sections: &Sections<'_>,
+    section: Loaded<'_>,
+    layers: &LayeredMaterial,
+    uniform: Option<Loaded<'_>>,
+    issues: &mut Vec<Issue>,
+) {
     for (layer, name) in [("coat", &layers.coat), ("base", &layers.base)] {
         if !sections.has(PARAMS, name) {
             let message = format!("expected NDF maps for the {layer}, found none named {name:?}");
@@ -281,5 +349,15 @@ fn check_layers(sections: &Sections<'_>, section: Loaded<'_>, layers: &LayeredMa
     let reflectances = [layers.coat_f0, layers.base_f0[0], layers.base_f0[1], layers.base_f0[2]];
     if let Some(found) = reflectances.iter().find(|f0| !(0.0..=1.0).contains(*f0)) {
         issues.push(section.error(IssueCode::LayerValue, format!("expected 0 to 1, found {found}")));
+    }
+    let Some(uniform) = uniform else { return };
+    let stride = size_of::<LayersUniform>() as u32;
+    if !uniform.expect(IssueCode::WrongDescriptor, Resource::Buffer { stride, count: 1 }, issues) {
+        return;
+    }
+    let expected = LayersUniform::of(layers);
+    let found: LayersUniform = bytemuck::pod_read_unaligned(uniform.payload);
+    if bytemuck::bytes_of(&found) != bytemuck::bytes_of(&expected) {
+        issues.push(uniform.error(IssueCode::LayerUniform, format!("expected {expected:?}, found {found:?}")));
     }
 }

@@ -3,7 +3,7 @@
 use super::without;
 use crate::corrupt_corpus::{Case, case};
 use crate::samples::*;
-use glint_formats::area_light::{self, AreaLightParams};
+use glint_formats::area_light::{self, AreaLightParams, AreaLightUniform};
 use glint_formats::{IssueCode, Resource};
 
 fn area_light_with_params(edit: impl Fn(&mut AreaLightParams)) -> Vec<u8> {
@@ -35,6 +35,14 @@ fn short_table() -> Vec<u8> {
     pack(sections)
 }
 
+fn area_light_with_uniform(edit: impl Fn(&mut AreaLightUniform)) -> Vec<u8> {
+    let mut sections = good_area_light();
+    let mut uniform = area_light_params().uniform();
+    edit(&mut uniform);
+    sections[1].payload = bytemuck::bytes_of(&uniform).to_vec();
+    pack(sections)
+}
+
 pub fn cases() -> Vec<Case> {
     vec![
         case(IssueCode::AreaLightParameters, area_light_with_params(|params| params.base_roughness = 0.0)),
@@ -43,13 +51,15 @@ pub fn cases() -> Vec<Case> {
         case(IssueCode::AreaLightRoughness, area_light_with_texels(|[_, roughness]| roughness[9] = 100)),
         case(IssueCode::LtcShape, short_table()),
         case(IssueCode::LtcValue, area_light_with_table(|table| table[1] = 0xbc00)),
+        case(IssueCode::AreaLightUniform, area_light_with_uniform(|uniform| uniform.mips = 1)),
     ]
 }
 
 #[test]
 fn every_way_an_area_light_can_be_wrong_is_found() {
-    let edits: [fn(&mut AreaLightParams); 8] = [
+    let edits: [fn(&mut AreaLightParams); 9] = [
         |params| params.width = 0,
+        |params| params.width = 8193,
         |params| params.height = u32::MAX,
         |params| params.base_roughness = f32::NAN,
         |params| params.base_roughness = 1.5,
@@ -73,8 +83,19 @@ fn every_way_an_area_light_can_be_wrong_is_found() {
     assert_eq!(codes(&area_light_with_table(|table| table[1] = 0x3c00)), [] as [IssueCode; 0]);
     assert_eq!(codes(&area_light_with_table(|table| table[1..3].fill(0x3d00))), [IssueCode::LtcValue; 2]);
     assert_eq!(codes(&area_light_with_table(|table| table[7] = 0x7e00)), [IssueCode::LtcValue; 2]);
-    for kind in [area_light::NORMALS, area_light::ROUGHNESS, area_light::INVERSE, area_light::TERMS] {
+    let edits: [fn(&mut AreaLightUniform); 4] = [
+        |uniform| uniform.size[0] = 3.0,
+        |uniform| uniform.wrap = 0,
+        |uniform| uniform.anisotropic = 2,
+        |uniform| uniform.unused_2 = 1,
+    ];
+    for edit in edits {
+        assert_eq!(codes(&area_light_with_uniform(edit)), [IssueCode::AreaLightUniform]);
+    }
+    for kind in
+        [area_light::UNIFORM, area_light::NORMALS, area_light::ROUGHNESS, area_light::INVERSE, area_light::TERMS]
+    {
         assert_eq!(codes(&pack(without(good_area_light(), kind))), [IssueCode::MissingSection]);
     }
-    assert_eq!(codes(&pack(without(good_area_light(), area_light::PARAMS))), [IssueCode::OrphanSection; 4]);
+    assert_eq!(codes(&pack(without(good_area_light(), area_light::PARAMS))), [IssueCode::OrphanSection; 5]);
 }

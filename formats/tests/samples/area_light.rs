@@ -27,7 +27,7 @@ pub fn ltc_table() -> Vec<u16> {
     [0x3c00, 0, 0, 0x3c00].repeat(64 * 64)
 }
 
-/// The five sections of an area-light material.
+/// The six sections of an area-light material, uniforms as they follow from the parameters.
 pub fn area_light_sections(params: &AreaLightParams, texels: &[Vec<u8>; 2], table: &[u16]) -> Vec<Section> {
     let texture =
         |vk_format, width, height, mips| Resource::Texture { vk_format, width, height, layers: 1, faces: 1, mips };
@@ -37,6 +37,7 @@ pub fn area_light_sections(params: &AreaLightParams, texels: &[Vec<u8>; 2], tabl
     let table: Vec<u8> = bytemuck::cast_slice(table).to_vec();
     vec![
         Section::parameters(area_light::PARAMS, "metal", params),
+        Section::buffer(area_light::UNIFORM, "metal", &[params.uniform()]),
         Section::texture(area_light::NORMALS, "metal", map, normals.clone()),
         Section::texture(area_light::ROUGHNESS, "metal", map, roughness.clone()),
         Section::texture(area_light::INVERSE, "metal", ltc, table.clone()).compressed(),

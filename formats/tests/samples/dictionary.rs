@@ -1,7 +1,7 @@
 //! Sections of a dictionary.
 
+use glint_formats::Section;
 use glint_formats::dictionary::{self, DictionaryParams};
-use glint_formats::{Resource, Section, vk_format};
 
 /// Two marginals at two levels, of four entries half a slope apart.
 pub fn dictionary_params() -> DictionaryParams {
@@ -22,18 +22,21 @@ pub fn dictionary_table() -> Vec<u16> {
     vec![0x3400; 16]
 }
 
-/// The two sections of a dictionary.
-pub fn dictionary_sections(params: &DictionaryParams, table: &[u16]) -> Vec<Section> {
-    let resource = Resource::Texture {
-        vk_format: vk_format::R16_SFLOAT,
-        width: 4,
-        height: table.len() as u32 / 4,
-        layers: 1,
-        faces: 1,
-        mips: 1,
-    };
+/// A row's half floats, each with the next of four: words of the table.
+pub fn dictionary_pairs(table: &[u16]) -> Vec<u32> {
+    let pair = |row: &[u16], b: usize| u32::from(row[b]) | u32::from(row[(b + 1).min(row.len() - 1)]) << 16;
+    table.chunks(4).flat_map(|row| (0..row.len()).map(move |b| pair(row, b))).collect()
+}
+
+/// The three sections of a dictionary: parameters, the uniforms that follow from them, and a table.
+pub fn dictionary_sections(params: &DictionaryParams, words: &[u32]) -> Vec<Section> {
     vec![
         Section::parameters(dictionary::PARAMS, "lobes", params),
-        Section::texture(dictionary::TABLE, "lobes", resource, bytemuck::cast_slice(table).to_vec()),
+        Section::buffer(dictionary::UNIFORM, "lobes", &[params.uniform()]),
+        Section::buffer(dictionary::TABLE, "lobes", words),
     ]
+}
+
+pub fn good_dictionary() -> Vec<Section> {
+    dictionary_sections(&dictionary_params(), &dictionary_pairs(&dictionary_table()))
 }

@@ -13,7 +13,6 @@ pub use area_light::*;
 pub use dictionary::*;
 pub use environment::*;
 use glint_formats::container::{FourCc, Limits};
-use glint_formats::ndf_maps::*;
 use glint_formats::provenance::{InputDigest, PROVENANCE, Provenance};
 use glint_formats::{IssueCode, PackBuilder, Section, validate};
 pub use lobes::*;
@@ -56,10 +55,9 @@ pub fn provenance_section() -> Section {
 /// A pack with every kind of section, one of them compressed.
 pub fn full_pack() -> Vec<u8> {
     let mut sections = vec![provenance_section()];
-    sections.extend(good_ndf_maps());
-    sections.extend(placement(&palette(), &noise_texels()));
-    sections.push(Section::parameters(LAYERS, "coated rock", &layered()));
-    sections.extend(dictionary_sections(&dictionary_params(), &dictionary_table()));
+    sections.extend(placed(&noise_texels()));
+    sections.extend(layer_sections(&layered()));
+    sections.extend(good_dictionary());
     sections.extend(environment_sections(&environment_params(), &environment_indicators(), 0x3c00));
     sections.extend(good_area_light());
     sections.extend(good_lobes());

@@ -78,6 +78,7 @@ impl Args {
                 Format::Snorm8 => NormalStorage::Snorm8,
             },
             skip_mips: self.skip_mips,
+            max_memory: self.run.max_memory,
         }
     }
 

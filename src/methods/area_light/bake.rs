@@ -9,7 +9,8 @@ use crate::methods::method::provenance;
 use crate::pack;
 use crate::progress::Stages;
 use crate::quantities::kib;
-use glint_bake_core::area_light::{self, AreaLightMaterial, mips, sections};
+use glint_bake_core::area_light::{self, AreaLightMaterial, sections};
+use glint_bake_core::error::BakeError;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_formats::Codec;
@@ -26,8 +27,7 @@ pub fn draft(args: &Args) -> Result<((NormalMap, AreaLightMaterial), u64), Failu
     let name = args.name()?;
     let loaded = load_normal_map(&args.map, &args.input.options(args.run.max_memory))?;
     let digest = digest(&args.map, &loaded)?;
-    let material = area_light::bake(&loaded.map, &options, args.run.max_memory, &Silent)
-        .map_err(|e| Failure::bake(&args.map, &e))?;
+    let material = area_light::bake(&loaded.map, &options, &Silent).map_err(|e| Failure::bake(&args.map, &e))?;
     let codec = if args.compress { Codec::Zstd } else { Codec::None };
     let sections = sections::to_sections(&name, &material, codec);
     let bytes = pack::seal(&provenance_of(args, &loaded, digest), sections)?.len() as u64;
@@ -48,7 +48,7 @@ pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Fai
     }
     let (width, height) = (loaded.map.width, loaded.map.height);
     let bytes = map_bytes(args, width, height);
-    mips::check_memory(&loaded.map, args.run.max_memory).map_err(|e| Failure::bake(&args.map, &e))?;
+    area_light::bake::check(&loaded.map, &options).map_err(|e| refusal(args, &e))?;
     delivery.check_size(bytes, SMALLER)?;
     let line = {
         let skipped = args.skip_mips.min(full_mip_count(width, height) - 1);
@@ -62,13 +62,23 @@ pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Fai
     }
     terminal.detail(&format!("{}: {line}, {}", args.map.display(), loaded.convention));
     let stages = Stages::new(terminal);
-    let material = area_light::bake(&loaded.map, &options, args.run.max_memory, &stages)
-        .map_err(|e| Failure::bake(&args.map, &e))?;
+    let material = area_light::bake(&loaded.map, &options, &stages).map_err(|e| Failure::bake(&args.map, &e))?;
     let codec = if args.compress { Codec::Zstd } else { Codec::None };
     let sections = sections::to_sections(&name, &material, codec);
     drop(material);
     let bytes = pack::seal(&provenance_of(args, &loaded, digest), sections)?;
     Ok(Some(FinishedPack { bytes, smaller: SMALLER }))
+}
+
+/// Why a map is refused, and which flags would help.
+fn refusal(args: &Args, error: &BakeError) -> Failure {
+    let failure = Failure::bake(&args.map, error);
+    let flags = match error {
+        BakeError::LimitExceeded(_) => "; raise --max-memory, or use --crop WxH+X+Y",
+        BakeError::BadInput(_) => "; see --skip-mips and --crop",
+        BakeError::BadOption(_) => "",
+    };
+    Failure { message: failure.message + flags, ..failure }
 }
 
 /// Bytes of the textures of a map.

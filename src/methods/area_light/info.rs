@@ -3,7 +3,8 @@
 use crate::methods::contents::Item;
 use crate::quantities::kib;
 use glam::Vec2;
-use glint_bake_core::area_light::fetch::{Maps, fetch};
+use glint_bake_core::area_light::baked::Maps;
+use glint_bake_core::area_light::eval::fetch;
 use glint_bake_core::area_light::sections;
 use glint_formats::Pack;
 use glint_formats::Wrap;

@@ -8,6 +8,8 @@ use crate::methods::bake::FinishedPack;
 use crate::methods::method::provenance;
 use crate::pack;
 use glint_bake_core::dictionary::{self, quality, sections};
+use glint_bake_core::error::BakeError;
+use glint_bake_core::progress::Silent;
 use glint_formats::Codec;
 use glint_formats::provenance::Provenance;
 
@@ -19,10 +21,14 @@ const SMALLER: &str = "give fewer --marginals, --levels or --entries";
 /// Checks everything, then bakes, on one thread however many are offered: a dictionary takes hundredths of a second.
 pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Failure> {
     let options = args.options();
-    options.validate()?;
+    options.validate().map_err(|error| {
+        let too_large = matches!(error, BakeError::LimitExceeded(_));
+        let failure = Failure::from(error);
+        if too_large { Failure { message: format!("{}; {SMALLER}", failure.message), ..failure } } else { failure }
+    })?;
     let delivery = args.delivery();
     delivery.check()?;
-    delivery.check_size(2 * options.tables() * u64::from(options.entries), SMALLER)?;
+    delivery.check_size(4 * options.tables() * u64::from(options.entries), SMALLER)?;
     if args.run.dry_run {
         terminal.say(&format!(
             "would write {}: {}; dry run, nothing was written",
@@ -31,7 +37,7 @@ pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Fai
         ));
         return Ok(None);
     }
-    let dictionary = dictionary::bake(&options)?;
+    let dictionary = dictionary::bake(&options, &Silent)?;
     let codec = if args.compress { Codec::Zstd } else { Codec::None };
     let sections = sections::to_sections(NAME, &dictionary, quality::measure(&dictionary), codec);
     drop(dictionary);

@@ -50,9 +50,9 @@ impl DictionaryInfo {
         decode_all(pack, PARAMS).into_iter().map(describe).collect()
     }
 
-    /// Size on one line.
+    /// Size on one line, that of the table as a GPU holds it.
     pub fn size_line(marginals: u32, levels: u32, entries: u32) -> String {
-        let bytes = 2 * u64::from(marginals) * u64::from(levels) * u64::from(entries);
+        let bytes = 4 * u64::from(marginals) * u64::from(levels) * u64::from(entries);
         format!("{marginals} marginals × {levels} levels × {entries} entries, {}", kib(bytes))
     }
 

@@ -21,10 +21,10 @@ use glint_bake_core::ndf_maps::placement::place;
 use glint_bake_core::ndf_maps::sections;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::{Progress, Silent};
+use glint_formats::Codec;
 use glint_formats::container::MAX_NAME_BYTES;
-use glint_formats::ndf_maps::{DensityStorage, LAYERS, LayeredMaterial};
+use glint_formats::ndf_maps::{DensityStorage, LayeredMaterial};
 use glint_formats::provenance::{InputDigest, Provenance};
-use glint_formats::{Codec, Section};
 use std::path::PathBuf;
 
 /// A bake that is only looked at: maps and materials, and the bytes that the pack would have.
@@ -300,7 +300,7 @@ pub fn assemble(
         all.extend(sections::to_sections(&baked.name, &baked.material, codec));
     }
     if let Some(layers) = layers {
-        all.push(Section::parameters(LAYERS, &format!("{}:{}", layers.coat, layers.base), layers));
+        all.extend(sections::layer_sections(&format!("{}:{}", layers.coat, layers.base), layers));
     }
     seal(provenance, all)
 }

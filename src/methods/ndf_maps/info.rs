@@ -7,8 +7,7 @@ use crate::quantities::{kib, percent};
 use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::sections;
 use glint_formats::ndf_maps::{
-    CLASSES, DENSITY, LAYERS, LayeredMaterial, MeasuredError, NOISE, NORMALS, PALETTE, PARAMS, PLACEMENT,
-    PlacementKind, TILES,
+    CLASSES, DENSITY, LAYERS, LayeredMaterial, MeasuredError, NOISE, NORMALS, PlacementKind, TILES, UNIFORM,
 };
 use glint_formats::{FourCc, Pack, Wrap};
 use serde::Serialize;
@@ -33,7 +32,7 @@ pub struct MaterialInfo {
     pub storage: String,
     /// Levels, finest first.
     pub levels: Vec<LevelInfo>,
-    /// Bytes of each part once decompressed.
+    /// Bytes of each part on a GPU.
     pub bytes: PartBytes,
     /// E₁ that was asked of every tile.
     pub max_error: f32,
@@ -60,18 +59,18 @@ pub struct LevelInfo {
     pub worst_error: f64,
 }
 
-/// Bytes of each part once decompressed.
+/// Bytes of each part on a GPU.
 #[derive(Debug, Serialize)]
 pub struct PartBytes {
-    /// Tile records.
+    /// Uniform: levels, palette, reach mask, tile records; and the table of tiles that are many.
     pub tiles: u64,
-    /// Density texels.
+    /// Density, in blocks or words.
     pub density: u64,
     /// Example normals.
     pub normals: u64,
-    /// Placement: palette, noise map, class map.
+    /// Placement: noise map, class map.
     pub placement: u64,
-    /// All of the above and the parameters.
+    /// All of the above: what a GPU holds.
     pub total: u64,
     /// What the paper's layout takes for the tiles.
     pub paper: u64,
@@ -93,13 +92,13 @@ impl MaterialInfo {
     fn of(name: &str, material: &Material, pack: &Pack) -> MaterialInfo {
         let params = &material.maps.params;
         let raw = |kind: FourCc| pack.find(kind, name).map_or(0, |entry| entry.raw_len);
-        let placement = raw(PALETTE) + raw(NOISE) + raw(CLASSES);
+        let (tiles, placement) = (raw(UNIFORM) + raw(TILES), raw(NOISE) + raw(CLASSES));
         let bytes = PartBytes {
-            tiles: raw(TILES),
+            tiles,
             density: raw(DENSITY),
             normals: raw(NORMALS),
             placement,
-            total: raw(TILES) + raw(DENSITY) + raw(NORMALS) + placement + raw(PARAMS) + raw(PLACEMENT),
+            total: tiles + raw(DENSITY) + raw(NORMALS) + placement,
             paper: material.maps.tiles.len() as u64 * PAPER_TILE_BYTES,
         };
         MaterialInfo {

@@ -99,15 +99,16 @@ fn owners(placement: &BakedPlacement) -> Option<Canvas> {
     let (columns, rows) = (cells_x.min(MAX_CELLS), cells_y.min(MAX_CELLS));
     let region = (384 / columns.max(rows)).clamp(4, 64);
     let mut canvas = Canvas::new(columns * 2 * region, rows * 2 * region, BACKGROUND);
-    let texel = |x: u32, y: u32| placement.noise[((y % cells_y) * cells_x + x % cells_x) as usize];
+    let texel = |x: u32, y: u32| placement.noise[(y * 2 * cells_x + x) as usize];
+    let owner = |x: u32, y: u32| {
+        let [dx, dy] = texel(x, y).neighbour();
+        ((x / 2 + cells_x).wrapping_add_signed(dx) % cells_x, (y / 2 + cells_y).wrapping_add_signed(dy) % cells_y)
+    };
     for y in 0..rows * 2 {
         for x in 0..columns * 2 {
-            let own = texel(x / 2, y / 2);
-            let neighbour = own.class_and_owners >> (16 + 4 * (x % 2 + 2 * (y % 2))) & 0xf;
-            let owner = (x / 2 + cells_x + neighbour % 3 - 1, y / 2 + cells_y + neighbour / 3 - 1);
-            let class = texel(owner.0, owner.1).class_and_owners & 0xff;
+            let (owner, class) = (owner(x, y), texel(x, y).class());
             // Owners of one class differ a little, so that single examples can be told apart.
-            let shade = 0.8 + 0.2 * ((owner.0 % cells_x * 7 + owner.1 % cells_y * 13) % 5) as f32 / 4.0;
+            let shade = 0.8 + 0.2 * ((owner.0 * 7 + owner.1 * 13) % 5) as f32 / 4.0;
             let hue = class as f32 / placement.params.palette_len as f32;
             canvas.fill(
                 (x * region, y * region),
@@ -116,11 +117,11 @@ fn owners(placement: &BakedPlacement) -> Option<Canvas> {
             );
         }
     }
-    for y in 0..rows {
-        for x in 0..columns {
-            let centre = texel(x, y).centre;
+    for y in 0..rows * 2 {
+        for x in 0..columns * 2 {
+            let (owner, centre) = (owner(x, y), texel(x, y).centre);
             let at = |cell: u32, part: u32| (2 * region) * cell + (2 * region) * part / 65536;
-            let (px, py) = (at(x, centre & 0xffff), at(y, centre >> 16));
+            let (px, py) = (at(owner.0, centre & 0xffff), at(owner.1, centre >> 16));
             canvas.fill((px.saturating_sub(1), py.saturating_sub(1)), (2, 2), [255; 3]);
         }
     }

@@ -87,24 +87,31 @@ pub fn example(map: &NormalMap, count: u32, scale: &Settings) -> Result<Example>
         let reference = SurfaceReference::new(map, &material);
         for anisotropy in ANISOTROPIES {
             for sigma in SIGMAS_TEXELS {
-                let (errors, cost) = measured(map, &reference, sigma, anisotropy, count, EvalSettings::default());
+                let (errors, cost) =
+                    measured(map, &reference, sigma, anisotropy, count, EvalSettings::default(), scale);
                 sizes.push(Size { placement: name, sigma, anisotropy, errors, cost });
             }
         }
         if name == "stochastic" {
             for settings in DIAL {
-                dial.push(dial_setting(map, &reference, settings, count.div_ceil(8)));
+                dial.push(dial_setting(map, &reference, settings, count.div_ceil(8), scale));
             }
         }
     }
     Ok(Example { settings: settings(map, scale)?, sizes, dial })
 }
 
-fn dial_setting(map: &NormalMap, reference: &SurfaceReference<'_>, settings: EvalSettings, count: u32) -> Dial {
+fn dial_setting(
+    map: &NormalMap,
+    reference: &SurfaceReference<'_>,
+    settings: EvalSettings,
+    count: u32,
+    scale: &Settings,
+) -> Dial {
     let mut dial = Dial { settings, mean_error: 0.0, cost: Cost::default() };
     let share = 1.0 / SIGMAS_TEXELS.len() as f64;
     for sigma in SIGMAS_TEXELS {
-        let (errors, cost) = measured(map, reference, sigma, 1.0, count, settings);
+        let (errors, cost) = measured(map, reference, sigma, 1.0, count, settings, scale);
         dial.mean_error += errors.e1.mean * share;
         dial.cost.gather += cost.gather * share;
         dial.cost.query += cost.query * share;
@@ -119,26 +126,26 @@ fn measured(
     anisotropy: f64,
     count: u32,
     settings: EvalSettings,
+    scale: &Settings,
 ) -> (FootprintErrors, Cost) {
     const SEED: u64 = 5;
     let extent = DVec2::new(map.width as f64, map.height as f64) * 32.0;
     let footprints = sweep_footprints(sigma, anisotropy, extent, count, SEED);
     let errors = footprint_errors(reference, &footprints, settings);
     // The same 64 places whatever was asked, so that costs compare between reports.
-    let places = sweep_footprints(sigma, anisotropy, extent, FOOTPRINTS, SEED);
-    (errors, cost(reference.material(), &places, settings))
+    let places = sweep_footprints(sigma, anisotropy, extent, scale.pick(FOOTPRINTS, 4), SEED);
+    (errors, cost(reference.material(), &places, settings, scale.pick(16, 2)))
 }
 
-/// Time of a footprint and of a query, over directions spread where the whole example's NDF lies: the least of some
+/// Time of a footprint and of a query, over directions spread where the whole example's NDF lies: the least of so many
 /// rounds, because other work on the machine only ever adds to it.
-fn cost(material: &Material, footprints: &[Footprint], settings: EvalSettings) -> Cost {
-    const ROUNDS: usize = 16;
+fn cost(material: &Material, footprints: &[Footprint], settings: EvalSettings, rounds: usize) -> Cost {
     const SIDE: usize = 8;
     let top = material.maps.tiles[material.maps.tiles.len() - 1];
     let low = Vec2::from(top.origin);
     let size = Vec2::new(top.width() as f32, top.height() as f32) / Vec2::from(top.inv_spacing);
     let mut least = Cost { gather: f64::INFINITY, query: f64::INFINITY };
-    for _ in 0..ROUNDS {
+    for _ in 0..rounds {
         let begin = Instant::now();
         let terms: Vec<Terms> = footprints.iter().map(|footprint| material.gather(footprint, settings)).collect();
         least.gather = least.gather.min(begin.elapsed().as_secs_f64() * 1e6 / footprints.len() as f64);

@@ -1,7 +1,9 @@
 //! A window with the smooth BRDF and a slope dictionary that is baked on the spot, without a pack: for tests of the window,
 //! and to see what a program has to bring. `--frames N` ends after N frames, `--lose N` loses the device before frame N.
 
-use glint_bake_core::dictionary;
+use glint_bake_core::dictionary::{self, quality, sections};
+use glint_bake_core::progress::Silent;
+use glint_formats::Codec;
 use glint_view::gpu::{ResourceSet, Wish};
 use glint_view::methods;
 use glint_view::render::{Material, Method, Picture, Shown};
@@ -20,7 +22,7 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    let baked = match dictionary::bake(&Default::default()) {
+    let baked = match dictionary::bake(&Default::default(), &Silent) {
         Ok(baked) => baked,
         Err(error) => {
             eprintln!("{error}");
@@ -43,9 +45,10 @@ fn main() -> ExitCode {
                 constants: Vec::new(),
                 rim_roughness: 0.0,
             };
+            let sections = sections::to_sections("", &baked, quality::measure(&baked), Codec::None);
             let list = vec![
                 shown(Method::Smooth, ResourceSet::default().finish(gpu)),
-                shown(Method::Dictionary, methods::dictionary::upload(gpu, &baked, &[])),
+                shown(Method::Dictionary, methods::dictionary::upload_sections(gpu, &sections, &[])?),
             ];
             Ok(Loaded { list, environment: None, notes: Vec::new() })
         }),

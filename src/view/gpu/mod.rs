@@ -7,5 +7,5 @@ mod sections;
 
 pub use compute::{answer, read_back};
 pub use device::{Gpu, GpuError, Wish};
-pub use resources::{BoundSection, GpuTexture, ResourceSet, Resources, TABLE_WIDTH};
-pub use sections::{bind_pack, bind_sections};
+pub use resources::{BoundSection, GpuTexture, ResourceSet, Resources};
+pub use sections::{bind_pack, bind_parts, bind_sections, collect_pack, collect_sections};

@@ -56,14 +56,11 @@ pub struct Resources {
     pub group: wgpu::BindGroup,
     /// What the user should know: formats that were converted.
     pub notes: Vec<String>,
-    /// Bytes on the GPU, of textures and buffers.
+    /// Bytes of the sections of a pack among them.
     pub bytes: u64,
     /// The sections of a pack among them, in the order of bindings.
     pub sections: Vec<(FourCc, BoundSection)>,
 }
-
-/// Elements in a row of [`ResourceSet::table`]; `bind_table_place` of bind_table.wgsl has the same.
-pub const TABLE_WIDTH: u32 = 1024;
 
 const STAGES: wgpu::ShaderStages = wgpu::ShaderStages::FRAGMENT.union(wgpu::ShaderStages::COMPUTE);
 
@@ -74,13 +71,20 @@ impl ResourceSet {
         self.resources.push(resource);
     }
 
+    /// Notes the resource of `bytes` bytes if it holds a section.
+    fn bound(&mut self, resource: BoundSection, bytes: usize) {
+        if let Some(kind) = self.next.take() {
+            self.bytes += bytes as u64;
+            self.sections.push((kind, resource));
+        }
+    }
+
     fn buffer(&mut self, gpu: &Gpu, ty: wgpu::BufferBindingType, usage: wgpu::BufferUsages, contents: &[u8]) {
         // Bindings have a multiple of four bytes, and at least one vector of a storage array.
         let mut padded = contents.to_vec();
         padded.resize(contents.len().next_multiple_of(16).max(16), 0);
-        self.bytes += contents.len() as u64;
         let buffer = gpu.buffer(usage | wgpu::BufferUsages::COPY_SRC, &padded);
-        self.sections.extend(self.next.take().map(|kind| (kind, BoundSection::Buffer(buffer.clone()))));
+        self.bound(BoundSection::Buffer(buffer.clone()), padded.len());
         self.push(
             wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
             Resource::Buffer(buffer),
@@ -129,10 +133,9 @@ impl ResourceSet {
             usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         };
-        self.bytes += contents.len() as u64;
         let texture =
             gpu.device.create_texture_with_data(&gpu.queue, &descriptor, TextureDataOrder::MipMajor, contents);
-        self.sections.extend(self.next.take().map(|kind| (kind, BoundSection::Texture(texture.clone()))));
+        self.bound(BoundSection::Texture(texture.clone()), contents.len());
         let view = texture
             .create_view(&wgpu::TextureViewDescriptor { dimension: Some(shape.dimension), ..Default::default() });
         self.push(
@@ -140,24 +143,6 @@ impl ResourceSet {
             Resource::Texture(view),
         );
         self
-    }
-
-    /// Adds a table as a texture of [`TABLE_WIDTH`] columns, element i at column i mod `TABLE_WIDTH` of row i / `TABLE_WIDTH`:
-    /// elements of four bytes as `R32Uint`, of sixteen as `Rgba32Uint`.
-    ///
-    /// Whether an adapter in software reads this or a storage buffer faster depends on the program: to be measured.
-    pub fn table(&mut self, gpu: &Gpu, format: wgpu::TextureFormat, contents: &[u8]) -> &mut Self {
-        let row = TABLE_WIDTH as usize * format.block_copy_size(None).unwrap_or(4) as usize;
-        let mut padded = contents.to_vec();
-        padded.resize(contents.len().next_multiple_of(row).max(row), 0);
-        let shape = GpuTexture {
-            format,
-            size: [TABLE_WIDTH, (padded.len() / row) as u32],
-            layers: 1,
-            mips: 1,
-            dimension: wgpu::TextureViewDimension::D2,
-        };
-        self.texture_of(gpu, shape, wgpu::TextureSampleType::Uint, &padded)
     }
 
     /// Adds a sampler that filters between texels and mips; it repeats or clamps.

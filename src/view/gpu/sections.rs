@@ -15,12 +15,30 @@ type Content<'a> = (Resource, Cow<'a, [u8]>);
 /// # Errors
 /// [`GpuError::BadPack`] for a section that is damaged, or larger than the device binds.
 pub fn bind_pack(gpu: &Gpu, pack: &Pack, name: &str, bindings: &[Binding], wrap: Wrap) -> Result<Resources, GpuError> {
-    let content = |kind: FourCc| {
-        let Some(entry) = pack.find(kind, name) else { return Ok(None) };
-        let payload = pack.payload(entry).map_err(|issue| GpuError::BadPack(issue.to_string()))?;
-        Ok(Some((entry.resource, payload)))
-    };
-    bind(gpu, &content, bindings, wrap)
+    Ok(collect_pack(gpu, pack, name, bindings, wrap)?.finish(gpu))
+}
+
+/// Binds sections of several materials of a pack one after the other in a group; those of no name as if they were missing. `wrap` is
+/// how maps go on beyond their edges.
+///
+/// # Errors
+/// [`GpuError::BadPack`] for a section that is damaged, or larger than the device binds.
+pub fn bind_parts(
+    gpu: &Gpu,
+    pack: &Pack,
+    parts: &[(Option<&str>, &[Binding])],
+    wrap: Wrap,
+) -> Result<Resources, GpuError> {
+    let mut set = ResourceSet::default();
+    for (name, bindings) in parts {
+        let content = |kind: FourCc| {
+            let Some(entry) = name.and_then(|name| pack.find(kind, name)) else { return Ok(None) };
+            let payload = pack.payload(entry).map_err(|issue| GpuError::BadPack(issue.to_string()))?;
+            Ok(Some((entry.resource, payload)))
+        };
+        bind(gpu, &mut set, &content, bindings, wrap)?;
+    }
+    Ok(set.finish(gpu))
 }
 
 /// Binds sections that are not in a pack yet; one of each kind. See [`bind_pack`].
@@ -28,21 +46,57 @@ pub fn bind_pack(gpu: &Gpu, pack: &Pack, name: &str, bindings: &[Binding], wrap:
 /// # Errors
 /// [`GpuError::BadPack`] for a section that is larger than the device binds.
 pub fn bind_sections(gpu: &Gpu, sections: &[Section], bindings: &[Binding], wrap: Wrap) -> Result<Resources, GpuError> {
+    Ok(collect_sections(gpu, sections, bindings, wrap)?.finish(gpu))
+}
+
+/// What [`bind_pack`] binds, for a host to add bindings of its own after.
+///
+/// # Errors
+/// Those of [`bind_pack`].
+pub fn collect_pack(
+    gpu: &Gpu,
+    pack: &Pack,
+    name: &str,
+    bindings: &[Binding],
+    wrap: Wrap,
+) -> Result<ResourceSet, GpuError> {
+    let content = |kind: FourCc| {
+        let Some(entry) = pack.find(kind, name) else { return Ok(None) };
+        let payload = pack.payload(entry).map_err(|issue| GpuError::BadPack(issue.to_string()))?;
+        Ok(Some((entry.resource, payload)))
+    };
+    let mut set = ResourceSet::default();
+    bind(gpu, &mut set, &content, bindings, wrap)?;
+    Ok(set)
+}
+
+/// What [`bind_sections`] binds, for a host to add bindings of its own after.
+///
+/// # Errors
+/// Those of [`bind_sections`].
+pub fn collect_sections(
+    gpu: &Gpu,
+    sections: &[Section],
+    bindings: &[Binding],
+    wrap: Wrap,
+) -> Result<ResourceSet, GpuError> {
     let content = |kind: FourCc| {
         let section = sections.iter().find(|section| section.kind == kind);
         Ok(section.map(|section| (section.resource, Cow::Borrowed(&section.payload[..]))))
     };
-    bind(gpu, &content, bindings, wrap)
+    let mut set = ResourceSet::default();
+    bind(gpu, &mut set, &content, bindings, wrap)?;
+    Ok(set)
 }
 
-/// The sections that `bindings` name, by `content`, as a bind group.
+/// Adds the sections that `bindings` name, by `content`, to a bind group.
 fn bind<'a>(
     gpu: &Gpu,
+    set: &mut ResourceSet,
     content: &dyn Fn(FourCc) -> Result<Option<Content<'a>>, GpuError>,
     bindings: &[Binding],
     wrap: Wrap,
-) -> Result<Resources, GpuError> {
-    let mut set = ResourceSet::default();
+) -> Result<(), GpuError> {
     for binding in bindings {
         match *binding {
             Binding::Uniform(kind) => match content(kind)? {
@@ -70,7 +124,7 @@ fn bind<'a>(
             Binding::ClampSampler => set.sampler(gpu, wgpu::AddressMode::ClampToEdge),
         };
     }
-    Ok(set.finish(gpu))
+    Ok(())
 }
 
 fn sample_type(view: View) -> wgpu::TextureSampleType {

@@ -1,6 +1,5 @@
 //! From the sections of a pack to what the WGSL of each method binds.
 
-pub mod area_light;
 pub mod dictionary;
 pub mod environment;
 pub mod lobes;

@@ -1,16 +1,11 @@
-// Bindings of an area-light material for glint_area_light.wgsl and glint_ltc.wgsl: group 1. How they are read is in
+// Bindings of an area-light material for area_light/{eval,rect}.wgsl: group 1. How they are read is in
 // bind_area_light_sampler.wgsl (by samplers, for engines) or bind_area_light_loads.wgsl (to the last bit of a float).
 
 #import area_light::eval
 
-struct AreaLightData {
-    // Texels of the textures' first mip on one texel of the pack's: less than 1 where fine mips were left out on upload.
-    texel_scale: vec2f,
-    @align(16) maps: GlintAreaLightMaps,
-}
-
-@group(1) @binding(0) var<uniform> area_light: AreaLightData;
-// Section ALNM as it is in the pack, RGBA16Float or RGBA8Snorm, all mips.
+// Section ALUB.
+@group(1) @binding(0) var<uniform> area_light_maps: GlintAreaLightMaps;
+// Section ALNM, RGBA16Float or RGBA8Snorm, all mips.
 @group(1) @binding(1) var area_light_normals: texture_2d<f32>;
 // Section ALRO likewise; one texel of zeros for isotropic materials.
 @group(1) @binding(2) var area_light_roughness: texture_2d<f32>;

@@ -1,4 +1,4 @@
-// Accessors of glint_area_light.wgsl and glint_ltc.wgsl by loads of single texels: filtered with all digits of a float, as
+// Accessors of area_light/{eval,rect}.wgsl by loads of single texels: filtered with all digits of a float, as
 // the CPU twin does, which samplers do not promise.
 
 #import bind_area_light
@@ -12,7 +12,7 @@ struct AreaLightCell {
 }
 
 fn area_light_wrapped(i: vec2i, size: vec2i) -> vec2i {
-    if area_light.maps.wrap == 0u {
+    if area_light_maps.wrap == 0u {
         // Positions lie within a map's size of the map.
         return (i + 4 * size) % size;
     }
@@ -21,8 +21,8 @@ fn area_light_wrapped(i: vec2i, size: vec2i) -> vec2i {
 
 // The texels around `position`, in texels of the first mip, in one mip.
 fn area_light_cell(position: vec2f, mip: u32) -> AreaLightCell {
-    let size = max(vec2u(area_light.maps.size) >> vec2u(mip), vec2u(1u));
-    let p = position / area_light.maps.size * vec2f(size) - 0.5;
+    let size = max(vec2u(area_light_maps.size) >> vec2u(mip), vec2u(1u));
+    let p = position / area_light_maps.size * vec2f(size) - 0.5;
     let cell = floor(p);
     let i = vec2i(cell);
     return AreaLightCell(area_light_wrapped(i, vec2i(size)), area_light_wrapped(i + 1, vec2i(size)), mip, p - cell);
@@ -36,8 +36,8 @@ fn area_light_bilinear(map: texture_2d<f32>, position: vec2f, mip: u32) -> vec4f
 }
 
 fn area_light_trilinear(map: texture_2d<f32>, position: vec2f, level: f32) -> vec4f {
-    let low = min(u32(level), area_light.maps.mips - 1u);
-    let high = min(low + 1u, area_light.maps.mips - 1u);
+    let low = min(u32(level), area_light_maps.mips - 1u);
+    let high = min(low + 1u, area_light_maps.mips - 1u);
     let near = area_light_bilinear(map, position, low);
     return mix(near, area_light_bilinear(map, position, high), level - f32(low));
 }

@@ -1,4 +1,4 @@
-// Accessors of glint_area_light.wgsl and glint_ltc.wgsl by samplers: one look-up a texture. GPUs may take the place between
+// Accessors of area_light/{eval,rect}.wgsl by samplers: one look-up a texture. GPUs may take the place between
 // texels and mips in steps of 1/256.
 
 #import bind_area_light
@@ -6,12 +6,12 @@
 
 fn glint_area_light_normals(position: vec2f, level: f32) -> vec4f {
     bound_loads += 1u;
-    return textureSampleLevel(area_light_normals, area_light_sampler, position / area_light.maps.size, level);
+    return textureSampleLevel(area_light_normals, area_light_sampler, position / area_light_maps.size, level);
 }
 
 fn glint_area_light_roughness(position: vec2f, level: f32) -> vec4f {
     bound_loads += 1u;
-    return textureSampleLevel(area_light_roughness, area_light_sampler, position / area_light.maps.size, level);
+    return textureSampleLevel(area_light_roughness, area_light_sampler, position / area_light_maps.size, level);
 }
 
 fn area_light_table_uv(place: vec2f) -> vec2f {

@@ -1,54 +1,131 @@
-// Bindings of NDF maps for glint_ndf_maps.wgsl: group 1. Materials share the tables, so that a layered material takes no more
-// bindings than a plain one.
+// Bindings of NDF maps for ndf_maps/query.wgsl: group 1, sections as they lie in the pack, those of the base and then those of the coat
+// over it. Without a coat zeros are bound in its place.
+//
+// The including program defines NDF_MAPS_LAYERED: bool, whether a coat may be bound; false, where that is known when the pipeline is
+// made, takes all that belongs to one out of the program.
 
-#import ndf_maps::eval
+#import ndf_maps::query
 #import bind_loads
 #import bind_table
 
-struct NdfMapsLayer {
-    @align(16) material: GlintNdfMaterial,
+// Section NMUB.
+struct NdfMapsData {
+    material: GlintNdfMaterial,
+    // Levels, palette and reach mask, and the tiles if they are few.
+    records: array<vec4u, 4092>,
 }
 
-struct NdfMapsData {
-    // The only layer, or the base and the clear coat over it.
-    layers: array<NdfMapsLayer, 2>,
-    // How many there are.
-    count: u32,
+// Section LAUB.
+struct NdfMapsLayers {
     // Reflectance of the coat at normal incidence.
     coat_f0: f32,
-    // Levels and palettes, and the tiles if they are few.
-    @align(16) records: array<vec4u, 4000>,
+    // How many layers there are: 2, or 0 where there is no such section.
+    count: u32,
 }
 
 @group(1) @binding(0) var<uniform> ndf_maps: NdfMapsData;
-// Tables: noise maps, and tiles if they are many;
-@group(1) @binding(1) var ndf_maps_table: texture_2d<u32>;
-// normals, densities without blocks, classes and reach masks;
-@group(1) @binding(2) var ndf_maps_words: texture_2d<u32>;
-// densities in blocks.
-@group(1) @binding(3) var ndf_maps_blocks: texture_2d<u32>;
+// Section NMTI.
+@group(1) @binding(1) var ndf_maps_tiles: texture_2d<u32>;
+// Section NMDE.
+@group(1) @binding(2) var ndf_maps_density: texture_2d<u32>;
+// Section NMNO.
+@group(1) @binding(3) var ndf_maps_normals: texture_2d<u32>;
+// Section PLNO.
+@group(1) @binding(4) var ndf_maps_noise: texture_2d<u32>;
+// Section PLCL.
+@group(1) @binding(5) var ndf_maps_classes: texture_2d_array<f32>;
+// The same sections of the coat. Its uniform bytes are a storage buffer: some adapters fail on branches on a program's fourth uniform.
+@group(1) @binding(6) var<storage, read> ndf_maps_coat: array<vec4u>;
+@group(1) @binding(7) var ndf_maps_coat_tiles: texture_2d<u32>;
+@group(1) @binding(8) var ndf_maps_coat_density: texture_2d<u32>;
+@group(1) @binding(9) var ndf_maps_coat_normals: texture_2d<u32>;
+@group(1) @binding(10) var ndf_maps_coat_noise: texture_2d<u32>;
+@group(1) @binding(11) var ndf_maps_coat_classes: texture_2d_array<f32>;
+@group(1) @binding(12) var<storage, read> ndf_maps_layers: NdfMapsLayers;
 
-fn glint_ndf_record(at: u32) -> vec4u {
+// The base, 0, or the coat, 1.
+fn bind_ndf_maps_material(layer: u32) -> GlintNdfMaterial {
+    if NDF_MAPS_LAYERED {
+        if layer != 0u {
+            let a = ndf_maps_coat[0];
+            let b = ndf_maps_coat[1];
+            let c = ndf_maps_coat[2];
+            let d = ndf_maps_coat[3];
+            return GlintNdfMaterial(
+                a.xy, a.z, a.w, bitcast<f32>(b.x), b.y, b.z, b.w, bitcast<f32>(c.x), c.y, c.z, c.w, d.x, d.y,
+                bitcast<f32>(d.z), layer,
+            );
+        }
+    }
+    return ndf_maps.material;
+}
+
+fn glint_ndf_record(layer: u32, at: u32) -> vec4u {
     bound_loads += 1u;
+    if NDF_MAPS_LAYERED {
+        if layer != 0u {
+            return ndf_maps_coat[at + 4u];
+        }
+    }
     return ndf_maps.records[at];
 }
 
-fn glint_ndf_tile(at: u32) -> vec4u {
+fn glint_ndf_tile(layer: u32, at: u32) -> vec4u {
     bound_loads += 1u;
-    return textureLoad(ndf_maps_table, bind_table_place(at), 0);
+    if NDF_MAPS_LAYERED {
+        if layer != 0u {
+            return textureLoad(ndf_maps_coat_tiles, bind_table_place(at), 0);
+        }
+    }
+    return textureLoad(ndf_maps_tiles, bind_table_place(at), 0);
 }
 
-fn glint_ndf_noise_texel(at: u32) -> vec4u {
+fn glint_ndf_density_block(layer: u32, at: u32) -> vec3u {
     bound_loads += 1u;
-    return textureLoad(ndf_maps_table, bind_table_place(at), 0);
+    if NDF_MAPS_LAYERED {
+        if layer != 0u {
+            return textureLoad(ndf_maps_coat_density, bind_table_place(at), 0).xyz;
+        }
+    }
+    return textureLoad(ndf_maps_density, bind_table_place(at), 0).xyz;
 }
 
-fn glint_ndf_word(at: u32) -> u32 {
+fn glint_ndf_density_word(layer: u32, at: u32) -> u32 {
     bound_loads += 1u;
-    return textureLoad(ndf_maps_words, bind_table_place(at), 0).x;
+    if NDF_MAPS_LAYERED {
+        if layer != 0u {
+            return textureLoad(ndf_maps_coat_density, bind_table_place(at), 0).x;
+        }
+    }
+    return textureLoad(ndf_maps_density, bind_table_place(at), 0).x;
 }
 
-fn glint_ndf_block(at: u32) -> vec3u {
+fn glint_ndf_normal_texel(layer: u32, at: vec2i) -> u32 {
     bound_loads += 1u;
-    return textureLoad(ndf_maps_blocks, bind_table_place(at), 0).xyz;
+    if NDF_MAPS_LAYERED {
+        if layer != 0u {
+            return textureLoad(ndf_maps_coat_normals, at, 0).x;
+        }
+    }
+    return textureLoad(ndf_maps_normals, at, 0).x;
+}
+
+fn glint_ndf_noise_texel(layer: u32, at: vec2u) -> vec4u {
+    bound_loads += 1u;
+    if NDF_MAPS_LAYERED {
+        if layer != 0u {
+            return textureLoad(ndf_maps_coat_noise, at, 0);
+        }
+    }
+    return textureLoad(ndf_maps_noise, at, 0);
+}
+
+fn glint_ndf_class_texel(layer: u32, at: vec2u, group: u32, mip: u32) -> vec4f {
+    bound_loads += 1u;
+    if NDF_MAPS_LAYERED {
+        if layer != 0u {
+            return textureLoad(ndf_maps_coat_classes, at, group, mip);
+        }
+    }
+    return textureLoad(ndf_maps_classes, at, group, mip);
 }

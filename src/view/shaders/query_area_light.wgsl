@@ -47,13 +47,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let q = queries[id.x];
     let light =
         GlintRectLight(q.corner_0.xyz, q.corner_1.xyz, q.corner_2.xyz, q.corner_3.xyz, q.radiance, q.two_sided);
-    let surface = glint_area_light_fetch(area_light.maps, q.position, q.footprint_texels, q.lobes > 0u);
+    let surface = glint_area_light_fetch(area_light_maps, q.position, q.footprint_texels, q.lobes > 0u);
     let alpha = glint_convolve_alpha(q.base_alpha, surface.alpha);
     var answer: AreaLightAnswer;
     answer.radiance = glint_surface_radiance(surface, q.base_alpha, q.view, q.f0, light, q.lobes);
     answer.alpha_from_deficit = glint_alpha_from_deficit(q.deficit);
     answer.reflected = glint_ggx_cosine(surface.normal, q.view, q.light, alpha, q.f0);
-    answer.size = surface.size;
+    answer.size = surface.length;
     answer.normal = surface.normal;
     answer.alpha = surface.alpha;
     answer.major = surface.by_direction.major;

@@ -37,6 +37,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         q.colours, q.mean_colour.rgb,
     );
     let pixel = GlintPixelOnSurface(q.position, q.d_dx, q.d_dy);
-    let sum = glint_patch_sdf(dictionary.tables, material, pixel, q.slope);
+    let sum = glint_patch_sdf(dictionary_tables, material, pixel, q.slope);
     answers[id.x] = DictionaryAnswer(sum.sdf, sum.coverage);
 }

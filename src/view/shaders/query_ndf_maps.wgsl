@@ -2,6 +2,9 @@
 
 #import bind_ndf_maps
 
+// Both layers are asked, by their numbers.
+const NDF_MAPS_LAYERED: bool = true;
+
 struct NdfMapsQuery {
     mean: vec2f,
     s: vec2f,
@@ -14,7 +17,7 @@ struct NdfMapsQuery {
     max_terms: u32,
     splits: u32,
     reach: f32,
-    // Index of the material.
+    // 0 for the base, 1 for the coat.
     layer: u32,
     probes: u32,
 }
@@ -37,7 +40,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let q = queries[id.x];
-    let material = ndf_maps.layers[min(q.layer, 1u)].material;
+    let material = bind_ndf_maps_material(q.layer);
     let settings = GlintNdfSettings(q.tile_sigmas, q.lobe_sigmas, q.max_terms, q.splits, q.reach, q.probes);
     let sum = glint_ndf_density(material, GlintFootprint(q.mean, q.xx, q.xy, q.yy), settings, q.s);
     answers[id.x] = NdfMapsAnswer(

@@ -11,21 +11,16 @@
 // rasterisers on CPUs execute both sides of a branch.
 override AREA_LIGHT_DIRECTIONAL: bool = true;
 
-// Texels of the first mip on one surface unit.
-fn shade_area_light_scale() -> vec2f {
-    return material.texels_per_unit * area_light.texel_scale;
-}
-
 // Twice the standard deviation of the pixel's footprint along its longer side, in texels of the first mip.
 fn shade_area_light_footprint(point: ViewPoint) -> f32 {
-    let scale = shade_area_light_scale();
+    let scale = material.texels_per_unit;
     let longer2 = max(dot(point.d_dx * scale, point.d_dx * scale), dot(point.d_dy * scale, point.d_dy * scale));
     return 2.0 * material.pixel_sigma * sqrt(longer2);
 }
 
 fn shade_area_light_surface(point: ViewPoint, directional: bool) -> GlintAreaLightSurface {
-    let position = point.uv * shade_area_light_scale();
-    return glint_area_light_fetch(area_light.maps, position, shade_area_light_footprint(point), directional);
+    let position = point.uv * material.texels_per_unit;
+    return glint_area_light_fetch(area_light_maps, position, shade_area_light_footprint(point), directional);
 }
 
 // The scene's rectangle relative to the point, in its tangent frame.
@@ -51,7 +46,7 @@ fn shade_area_light_facet(point: ViewPoint, random: vec2f) -> vec3f {
     let radius = sqrt(-2.0 * log(1.0 - random.x)) * material.pixel_sigma;
     let angle = 6.2831853 * random.y;
     let place = point.uv + point.d_dx * (radius * cos(angle)) + point.d_dy * (radius * sin(angle));
-    let position = glint_into_map(area_light.maps, place * shade_area_light_scale());
+    let position = glint_into_map(area_light_maps, place * material.texels_per_unit);
     return glint_mean_direction(glint_area_light_normals(position, 0.0).xyz);
 }
 
@@ -92,5 +87,5 @@ fn shade_rect(point: ViewPoint) -> vec3f {
 }
 
 fn shade_lod(point: ViewPoint) -> f32 {
-    return glint_area_light_level(area_light.maps, shade_area_light_footprint(point));
+    return glint_area_light_level(area_light_maps, shade_area_light_footprint(point));
 }

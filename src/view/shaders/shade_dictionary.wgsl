@@ -1,7 +1,6 @@
 // A surface with the glints of a slope dictionary.
 
 #import view_scene
-#import brdf
 #import bind_dictionary
 
 // What a material has; false leaves its part out of the program.
@@ -24,9 +23,7 @@ fn shade_dictionary_brdf(pixel: GlintPixelOnSurface, view: vec3f, light: vec3f) 
         select(0u, material.colours, DICTIONARY_COLOURED),
         select(vec3f(1.0), material.mean_colour, DICTIONARY_COLOURED),
     );
-    let half = glint_half_vector(view, light);
-    let sum = glint_patch_sdf(dictionary.tables, parameters, pixel, glint_normal_to_slope(half));
-    return glint_facet_brdf(glint_sdf_to_ndf(sum.sdf, half.z), material.f0, view, light);
+    return glint_patch_brdf(dictionary_tables, parameters, material.f0, pixel, view, light).value;
 }
 
 fn shade_reflect(point: ViewPoint, light: vec3f) -> vec3f {
@@ -43,6 +40,6 @@ fn shade_reference(point: ViewPoint, light: vec3f, random: vec2f) -> vec3f {
 }
 
 fn shade_lod(point: ViewPoint) -> f32 {
-    let cells_per_unit = exp2(f32(dictionary.tables.levels - 1u));
+    let cells_per_unit = exp2(f32(dictionary_tables.levels - 1u));
     return glint_pixel_footprint(point.d_dx * cells_per_unit, point.d_dy * cells_per_unit, material.max_anisotropy).lod;
 }

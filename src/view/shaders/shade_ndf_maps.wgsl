@@ -12,8 +12,8 @@ const SHADE_NDF_SWAP: u32 = 1u;
 const SHADE_NDF_ACCURATE: u32 = 2u;
 
 // What is known of the data when the pipeline is made, so that it holds no code for what they do not need; by default all is read
-// from the data. Layers: 1 or 2, 0 for any.
-override NDF_MAPS_LAYERS: u32 = 0u;
+// from the data. Whether there are two layers.
+override NDF_MAPS_LAYERED: bool = true;
 // Cells of the stochastic placement along an axis, 0 where materials are tiled; 0xffffffff for any.
 override NDF_MAPS_CELLS: u32 = 0xffffffffu;
 // Whether density is in blocks: 1 or 0, 2 for any.
@@ -33,7 +33,7 @@ fn shade_ndf_settings() -> GlintNdfSettings {
 }
 
 fn shade_ndf_material(layer: u32) -> GlintNdfMaterial {
-    var found = ndf_maps.layers[layer].material;
+    var found = bind_ndf_maps_material(layer);
     if NDF_MAPS_CELLS != 0xffffffffu {
         found.cells = NDF_MAPS_CELLS;
     }
@@ -67,7 +67,7 @@ fn shade_ndf_density(layer: u32, footprint: GlintFootprint, s: vec2f, reference:
 
 fn shade_ndf_brdf(point: ViewPoint, light: vec3f, footprint: GlintFootprint, reference: bool) -> vec3f {
     let half = glint_half_vector(point.view, light);
-    let layered = NDF_MAPS_LAYERS != 1u && ndf_maps.count > 1u;
+    let layered = NDF_MAPS_LAYERED && ndf_maps_layers.count > 1u;
     let swap = select(0u, material.switches & SHADE_NDF_SWAP, layered);
     // A density over the disk of projected normals is one over normals by their projected area, which D is.
     let lower = vec3f(shade_ndf_density(swap, footprint, half.xy, reference));
@@ -76,7 +76,7 @@ fn shade_ndf_brdf(point: ViewPoint, light: vec3f, footprint: GlintFootprint, ref
         return base;
     }
     let upper = vec3f(shade_ndf_density(1u - swap, footprint, half.xy, reference));
-    let coat_f0 = vec3f(ndf_maps.coat_f0);
+    let coat_f0 = vec3f(ndf_maps_layers.coat_f0);
     let through = vec3f(1.0) - glint_fresnel(coat_f0, dot(point.view, half));
     return base * through + glint_facet_brdf(upper, coat_f0, point.view, light);
 }

@@ -6,13 +6,13 @@
 #import ggx
 
 fn shade_plain_ltc_level(point: ViewPoint) -> f32 {
-    let scale = material.texels_per_unit * area_light.texel_scale;
+    let scale = material.texels_per_unit;
     let longer2 = max(dot(point.d_dx * scale, point.d_dx * scale), dot(point.d_dy * scale, point.d_dy * scale));
-    return glint_area_light_level(area_light.maps, 2.0 * material.pixel_sigma * sqrt(longer2));
+    return glint_area_light_level(area_light_maps, 2.0 * material.pixel_sigma * sqrt(longer2));
 }
 
 fn shade_plain_ltc_normal(point: ViewPoint) -> vec3f {
-    let position = glint_into_map(area_light.maps, point.uv * (material.texels_per_unit * area_light.texel_scale));
+    let position = glint_into_map(area_light_maps, point.uv * material.texels_per_unit);
     return glint_mean_direction(glint_area_light_normals(position, shade_plain_ltc_level(point)).xyz);
 }
 

@@ -3,19 +3,17 @@
 use crate::support::{QUERIES, compare, gpu, log_uniform, random, real_map};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
-use glint_bake_core::area_light::eval::{
-    RectLight, Roughness, Tables, alpha_from_deficit, convolve_alpha, surface_radiance, tangent_frame,
-};
-use glint_bake_core::area_light::fetch::{Maps, Surface, fetch};
-use glint_bake_core::area_light::material::decode_tables;
+use glint_bake_core::area_light::baked::{Maps, Tables, decode_tables};
+use glint_bake_core::area_light::eval::{Surface, alpha_from_deficit, convolve_alpha, fetch, surface_radiance};
+use glint_bake_core::area_light::rect::{RectLight, Roughness, tangent_frame};
 use glint_bake_core::area_light::reference::brdf_cosine;
-use glint_bake_core::area_light::{AreaLightMaterial, AreaLightOptions, bake};
+use glint_bake_core::area_light::{AreaLightMaterial, AreaLightOptions, bake, sections};
 use glint_bake_core::normal_map::{HORIZON, NormalMap};
 use glint_bake_core::progress::Silent;
-use glint_formats::Wrap;
-use glint_formats::area_light::NormalStorage;
-use glint_view::gpu::{Gpu, answer};
-use glint_view::methods::area_light::{upload, upload_within};
+use glint_formats::area_light::{AreaLightUniform, BINDINGS, NormalStorage};
+use glint_formats::{Codec, Wrap};
+use glint_shaders::assert_same_layout;
+use glint_view::gpu::{Gpu, Resources, answer, bind_sections};
 use rand::{Rng, RngExt};
 use std::f32::consts::{PI, TAU};
 
@@ -129,6 +127,28 @@ fn cpu_reflected(query: &Query, surface: &Surface) -> Vec3 {
     Vec3::new(shade(0), shade(1), shade(2))
 }
 
+fn upload(gpu: &Gpu, material: &AreaLightMaterial) -> Resources {
+    let sections = sections::to_sections("material", material, Codec::None);
+    bind_sections(gpu, &sections, BINDINGS, material.params.wrap).unwrap()
+}
+
+#[test]
+fn uniforms_lie_as_the_shader_reads_them() {
+    let source = glint_shaders::compose(&["bind_area_light_sampler"]);
+    assert_same_layout!(
+        &source,
+        "GlintAreaLightMaps",
+        AreaLightUniform,
+        size,
+        mips,
+        wrap,
+        anisotropic,
+        unused_0,
+        unused_1,
+        unused_2
+    );
+}
+
 /// Asks both, and compares: radiance as a share of the light's, GGX over its peak, roughness and normals as they are.
 fn check(what: &str, gpu: &Gpu, materials: &[AreaLightMaterial]) {
     let rng = &mut random(11);
@@ -183,7 +203,7 @@ fn plain(surface: &Surface) -> Roughness {
 
 fn baked(map: &NormalMap, anisotropic: bool, storage: NormalStorage) -> AreaLightMaterial {
     let options = AreaLightOptions { anisotropic, storage, ..AreaLightOptions::default() };
-    bake(map, &options, 1 << 30, &Silent).unwrap()
+    bake(map, &options, &Silent).unwrap()
 }
 
 fn map(width: u32, height: u32, wrap: Wrap, normal: impl Fn(u32, u32) -> [f32; 2]) -> NormalMap {
@@ -297,22 +317,4 @@ fn hard_cases_are_finite_on_the_gpu_too() {
         }
     }
     assert!(bright > 1000, "{bright}");
-}
-
-#[test]
-fn a_map_larger_than_the_textures_loses_its_finest_mips() {
-    let Some(gpu) = gpu() else { return };
-    let whole = baked(&waves(128, 64, Wrap::Repeat, 1), true, NormalStorage::F16);
-    let options = AreaLightOptions { anisotropic: true, skip_mips: 2, ..AreaLightOptions::default() };
-    let skipped = bake(&waves(128, 64, Wrap::Repeat, 1), &options, 1 << 30, &Silent).unwrap();
-    let data = upload_within(gpu, &whole, 40);
-    assert!(data.notes[0].contains("128 x 64"), "{:?}", data.notes);
-    assert!(upload_within(gpu, &whole, 128).notes.is_empty());
-    let rng = &mut random(5);
-    let maps = Maps::new(&skipped);
-    let queries: Vec<Query> = (0..500).map(|_| query(rng, &maps, Vec2::new(32.0, 16.0)).0).collect();
-    let source = glint_shaders::compose(&["query_area_light"]);
-    let ask = |data| -> Vec<Answer> { answer(gpu, "skipped mips", &source, &[data], &queries).unwrap() };
-    let [found, expected] = [&data, &upload(gpu, &skipped)].map(ask);
-    assert_eq!(bytemuck::cast_slice::<_, u32>(&found), bytemuck::cast_slice::<_, u32>(&expected));
 }

@@ -3,10 +3,14 @@
 use crate::support::{QUERIES, compare, gpu, log_uniform, random};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
-use glint_bake_core::dictionary::eval::{GlintMaterial, PixelOnSurface, patch_sdf};
-use glint_bake_core::dictionary::{DictionaryOptions, bake};
+use glint_bake_core::dictionary::eval::{DictionaryMaterial, PixelOnSurface, patch_sdf};
+use glint_bake_core::dictionary::{DictionaryOptions, bake, quality, sections};
+use glint_bake_core::progress::Silent;
+use glint_formats::Codec;
+use glint_formats::dictionary::DictionaryUniform;
+use glint_shaders::assert_same_layout;
 use glint_view::gpu::answer;
-use glint_view::methods::dictionary::upload;
+use glint_view::methods::dictionary::upload_sections;
 use rand::{Rng, RngExt};
 
 /// `DictionaryQuery` of query_dictionary.wgsl.
@@ -34,13 +38,13 @@ fn direction(rng: &mut impl Rng) -> Vec2 {
     Vec2::from_angle(rng.random::<f32>() * std::f32::consts::TAU)
 }
 
-fn material(rng: &mut impl Rng, palette: &[Vec3]) -> GlintMaterial {
+fn material(rng: &mut impl Rng, palette: &[Vec3]) -> DictionaryMaterial {
     let alpha = log_uniform(rng, 0.01, 1.0);
     let colours = if rng.random() { palette.to_vec() } else { Vec::new() };
     let mean_colour = if colours.is_empty() { Vec3::ONE } else { colours.iter().sum::<Vec3>() / palette.len() as f32 };
-    GlintMaterial {
+    DictionaryMaterial {
         alpha: Vec2::new(alpha, if rng.random() { alpha } else { log_uniform(rng, 0.01, 1.0) }),
-        target: u32::from(rng.random::<bool>()),
+        normal_target: u32::from(rng.random::<bool>()),
         density: log_uniform(rng, 1.0, 1e12),
         relative_area: if rng.random() { 1.0 } else { rng.random() },
         density_randomisation: if rng.random() { 0.0 } else { 2.0 * rng.random::<f32>() },
@@ -52,9 +56,27 @@ fn material(rng: &mut impl Rng, palette: &[Vec3]) -> GlintMaterial {
 }
 
 #[test]
+fn uniforms_lie_as_the_shader_reads_them() {
+    let source = glint_shaders::compose(&["bind_dictionary"]);
+    assert_same_layout!(
+        &source,
+        "GlintDictionaryTables",
+        DictionaryUniform,
+        marginals,
+        levels,
+        entries,
+        alpha_dict,
+        domain,
+        inv_spacing,
+        lobe_area,
+        unused
+    );
+}
+
+#[test]
 fn the_slope_distribution_of_the_shader_is_that_of_the_cpu() {
     let Some(gpu) = gpu() else { return };
-    let dictionary = bake(&DictionaryOptions::default()).unwrap();
+    let dictionary = bake(&DictionaryOptions::default(), &Silent).unwrap();
     let tables = dictionary.tables();
     let palette = [Vec3::new(1.0, 0.2, 0.1), Vec3::new(0.2, 0.9, 0.3), Vec3::new(0.1, 0.3, 1.2)];
     let cell = (-(tables.levels as f32 - 1.0)).exp2();
@@ -79,7 +101,7 @@ fn the_slope_distribution_of_the_shader_is_that_of_the_cpu() {
             position: pixel.position,
             d_dx: pixel.d_dx,
             d_dy: pixel.d_dy,
-            normal_target: material.target,
+            normal_target: material.normal_target,
             density: material.density,
             relative_area: material.relative_area,
             density_randomisation: material.density_randomisation,
@@ -90,7 +112,8 @@ fn the_slope_distribution_of_the_shader_is_that_of_the_cpu() {
             mean_colour: material.mean_colour.extend(0.0).to_array(),
         });
     }
-    let data = upload(gpu, &dictionary, &palette);
+    let sections = sections::to_sections("dictionary", &dictionary, quality::measure(&dictionary), Codec::None);
+    let data = upload_sections(gpu, &sections, &palette).unwrap();
     let source = glint_shaders::compose(&["query_dictionary"]);
     let answers: Vec<[f32; 4]> = answer(gpu, "dictionary", &source, &[&data], &queries).unwrap();
     // Compared in units of the peak of the smooth target, so that 1e-5 is small.

@@ -22,7 +22,7 @@ use glint_formats::environment::{
     ALBEDO, BINDINGS, COLOURS, EnvironmentUniform, INDICATORS, MAX_LEVELS, RADIANCE, UNIFORM,
 };
 use glint_formats::{Codec, Wrap};
-use glint_shaders::assert_layout;
+use glint_shaders::assert_same_layout;
 use glint_view::gpu::{Gpu, ResourceSet, answer, bind_sections};
 use glint_view::methods::environment::empty;
 use rand::{Rng, RngExt};
@@ -301,10 +301,17 @@ fn a_sampler_reads_what_is_read_texel_by_texel() {
 
 #[test]
 fn the_uniform_lies_as_the_shader_reads_it() {
-    assert_layout!(
-        ["query_environment", "bind_environment"],
+    let source = glint_shaders::compose(&["query_environment", "bind_environment"]);
+    assert_same_layout!(
+        &source,
         "GlintEnvironment",
-        EnvironmentUniform: level, present, levels, mips, coloured, radiance_scale
+        EnvironmentUniform,
+        level,
+        present,
+        levels,
+        mips,
+        coloured,
+        radiance_scale
     );
 }
 

@@ -10,12 +10,15 @@ use glint_bake_core::ndf_maps::eval::{EvalSettings, LobeTerm, matrix};
 use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, StochasticOptions, TransformRanges};
 use glint_bake_core::ndf_maps::placement::place;
 use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
+use glint_bake_core::ndf_maps::sections::{from_pack, layer_sections, to_sections};
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
-use glint_formats::Wrap;
-use glint_formats::ndf_maps::DensityStorage;
+use glint_formats::ndf_maps::{DensityStorage, LayeredMaterial, MaterialUniform, UNIFORM_BYTES};
+use glint_formats::{Codec, Limits, Pack, PackBuilder, Wrap};
+use glint_shaders::assert_same_layout;
+use glint_shaders::layout::layout;
 use glint_view::gpu::{Gpu, answer};
-use glint_view::methods::ndf_maps::upload;
+use glint_view::methods::ndf_maps::bind;
 use rand::{Rng, RngExt};
 use rand_pcg::Pcg64;
 
@@ -196,8 +199,23 @@ fn queries(rng: &mut Pcg64, layers: [&Sample; 2], count: usize) -> Vec<Query> {
     (0..count).map(query).collect()
 }
 
+/// A pack of two materials, the second as a coat over the first.
+fn pack(layers: [&Sample; 2]) -> Pack {
+    let names = ["base", "coat"];
+    let both = LayeredMaterial { coat: names[1].into(), base: names[0].into(), coat_f0: 0.04, base_f0: [0.9; 3] };
+    let mut builder = PackBuilder::new();
+    let materials =
+        names.into_iter().zip(layers).flat_map(|(name, layer)| to_sections(name, &layer.material, Codec::None));
+    for section in materials.chain(layer_sections("both", &both)) {
+        builder.push(section).unwrap();
+    }
+    let pack = Pack::from_bytes(builder.finish().unwrap(), &Limits::default()).unwrap();
+    assert_eq!(pack.verify(), []);
+    pack
+}
+
 fn ask(gpu: &Gpu, layers: [&Sample; 2], queries: &[Query]) -> Vec<Answer> {
-    let data = upload(gpu, &layers[0].material, Some((&layers[1].material, 0.04))).unwrap();
+    let data = bind(gpu, &pack(layers), "base", Some(("coat", "both"))).unwrap();
     answer(gpu, "NDF maps", &glint_shaders::compose(&["query_ndf_maps"]), &[&data], queries).unwrap()
 }
 
@@ -358,4 +376,64 @@ fn hard_maps_and_footprints_have_finite_answers() {
     }
     println!("{count} answers are not zero");
     assert!(count > 1000);
+}
+
+#[test]
+fn a_material_comes_back_from_its_sections() {
+    for pair in samples() {
+        let pack = pack([&pair[0], &pair[1]]);
+        for (name, sample) in ["base", "coat"].into_iter().zip(&pair) {
+            let (found, expected) = (from_pack(&pack, name).unwrap(), &sample.material);
+            assert_eq!(found.maps.params, expected.maps.params);
+            assert_eq!(found.maps.tiles, expected.maps.tiles);
+            assert_eq!(found.maps.density, expected.maps.density);
+            assert_eq!(found.maps.normals, expected.maps.normals);
+            assert_eq!(found.placement.params, expected.placement.params);
+            assert_eq!(found.placement.palette, expected.placement.palette);
+            assert_eq!(found.placement.noise, expected.placement.noise);
+            assert_eq!(found.placement.classes, expected.placement.classes);
+        }
+    }
+}
+
+/// Every section that is bound is on the GPU as it lies in the pack.
+#[test]
+fn what_is_bound_is_what_the_pack_holds() {
+    let Some(gpu) = gpu() else { return };
+    for pair in samples() {
+        let pack = pack([&pair[0], &pair[1]]);
+        let data = bind(gpu, &pack, "base", Some(("coat", "both"))).unwrap();
+        let held: usize = data.sections.len();
+        let bound = |name: &str| pack.sections().iter().filter(|entry| entry.name == name).count();
+        // Two parameter sections a material, one of the layers.
+        assert_eq!(held, bound("base") + bound("coat") + bound("both") - 5);
+    }
+}
+
+#[test]
+fn the_uniform_lies_as_the_shader_reads_it() {
+    let source = glint_shaders::compose(&["query_ndf_maps"]);
+    assert_same_layout!(
+        &source,
+        "GlintNdfMaterial",
+        MaterialUniform,
+        size,
+        wrap,
+        storage,
+        intrinsic_roughness,
+        levels,
+        palette,
+        cells,
+        cell_texels,
+        palette_records,
+        reach_records,
+        tile_records,
+        blocks,
+        few_tiles,
+        most_texels,
+        layer
+    );
+    let whole = layout(&source, "NdfMapsData").unwrap();
+    assert_eq!(whole.members[1], ("records".into(), size_of::<MaterialUniform>() as u32));
+    assert_eq!(whole.size as usize, UNIFORM_BYTES);
 }

@@ -11,7 +11,9 @@ use glint_bake_core::surface::sections::to_sections;
 use glint_bake_core::surface::{Surface, SurfaceOptions, SurfaceSettings, bake};
 use glint_bake_core::synthesis::{SynthesisOptions, Target};
 use glint_formats::lobes::{BINDINGS, Filter, LobeStorage};
+use glint_formats::synthesis::SynthesisUniform;
 use glint_formats::{Codec, Wrap};
+use glint_shaders::assert_same_layout;
 use glint_view::gpu::{Gpu, answer, bind_sections};
 use glint_view::methods::lobes::surface_modules;
 use rand::{Rng, RngExt};
@@ -83,6 +85,32 @@ fn answers(gpu: &Gpu, surface: &Surface, rng: &mut impl Rng, whole_blocks: bool,
     let found: Vec<f32> = answer(gpu, "surface", &source, &[&data], &queries).unwrap();
     let unit = |i: usize| unit(surface.lobes.params.normal_extent, queries[i].place.roughness);
     found.iter().zip(&expected).enumerate().map(|(i, (a, e))| (a * unit(i), e * unit(i))).collect()
+}
+
+#[test]
+fn the_synthesis_lies_as_the_shader_reads_it() {
+    let source = glint_shaders::compose(&["bind_lobes", "lobes::packed", "synthesis::grid"]);
+    assert_same_layout!(
+        &source,
+        "GlintSynthesis",
+        SynthesisUniform,
+        sample_width,
+        sample_height,
+        wrap,
+        patch_texels,
+        overlap,
+        arrangement,
+        columns,
+        rows,
+        colours,
+        variants,
+        margin,
+        hash_seed,
+        path_bits,
+        path_per_word,
+        path_words,
+        colour_path_words,
+    );
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! What is bound on the GPU is what the pack holds, byte for byte, and every section that is no parameter is bound.
 
+use crate::adapter::gpu;
 use crate::subjects::{packs, subjects};
-use crate::support::gpu;
-use glint_formats::{Pack, Resource, SectionEntry};
+use glint_formats::{Limits, Pack, Resource, SectionEntry};
 use glint_view::gpu::{BoundSection, Gpu, read_back};
 use glint_view::subjects::Subjects;
 use std::collections::BTreeSet;
@@ -16,7 +16,9 @@ fn bytes_of(gpu: &Gpu, section: &BoundSection) -> Vec<u8> {
         BoundSection::Buffer(buffer) => copied(gpu, buffer.size(), |encoder, to| {
             encoder.copy_buffer_to_buffer(buffer, 0, to, 0, buffer.size());
         }),
-        BoundSection::Texture(texture) => (0..texture.mip_level_count()).flat_map(|mip| mip_bytes(gpu, texture, mip)).collect(),
+        BoundSection::Texture(texture) => {
+            (0..texture.mip_level_count()).flat_map(|mip| mip_bytes(gpu, texture, mip)).collect()
+        }
     }
 }
 
@@ -63,10 +65,18 @@ fn gpu_sections(pack: &Pack) -> impl Iterator<Item = &SectionEntry> {
     pack.sections().iter().filter(|entry| entry.resource != Resource::Parameters)
 }
 
+/// The packs of `fixtures/packs/v1`: a dictionary, a layered material, random placement.
+fn frozen_packs() -> Vec<Pack> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/packs/v1");
+    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    files.map(|path| Pack::open(path, &Limits::default()).unwrap()).collect()
+}
+
 #[test]
 fn what_is_bound_is_what_the_pack_holds() {
     let Some(gpu) = gpu() else { return };
-    for pack in packs() {
+    let frozen = frozen_packs();
+    for pack in packs().iter().chain(&frozen) {
         let subjects = Subjects::of_packs(gpu, &[pack], &[]).unwrap();
         let data = subjects.shown.iter().map(|shown| &shown.data).chain(&subjects.environment);
         let mut bound = BTreeSet::new();

@@ -2,6 +2,7 @@
 
 #[path = "../parity/adapter.rs"]
 mod adapter;
+mod bound;
 mod furnace;
 mod pictures;
 mod subjects;

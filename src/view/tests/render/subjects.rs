@@ -32,7 +32,7 @@ fn pack(sections: Vec<Section>) -> Pack {
 
 fn dictionary_pack() -> Pack {
     let options = DictionaryOptions::default();
-    let baked = dictionary::bake(&options).unwrap();
+    let baked = dictionary::bake(&options, &Silent).unwrap();
     pack(dictionary::sections::to_sections("glitter", &baked, quality::measure(&baked), Codec::None))
 }
 
@@ -97,17 +97,21 @@ fn environment_pack() -> Pack {
 
 fn area_light_pack() -> Pack {
     let options = AreaLightOptions { anisotropic: true, ..AreaLightOptions::default() };
-    let baked = area_light::bake(&map(64, 64), &options, 1 << 30, &Silent).unwrap();
+    let baked = area_light::bake(&map(64, 64), &options, &Silent).unwrap();
     pack(area_light::sections::to_sections("waves", &baked, Codec::None))
+}
+
+/// A pack of every method.
+pub fn packs() -> &'static [Pack] {
+    static PACKS: OnceLock<Vec<Pack>> = OnceLock::new();
+    PACKS.get_or_init(|| {
+        vec![dictionary_pack(), ndf_maps_pack(), lobes_pack(), surface_pack(), environment_pack(), area_light_pack()]
+    })
 }
 
 /// Subjects of every method.
 pub fn subjects(gpu: &Gpu) -> Subjects {
-    static PACKS: OnceLock<Vec<Pack>> = OnceLock::new();
-    let packs = PACKS.get_or_init(|| {
-        vec![dictionary_pack(), ndf_maps_pack(), lobes_pack(), surface_pack(), environment_pack(), area_light_pack()]
-    });
-    let subjects = Subjects::of_packs(gpu, &packs.iter().collect::<Vec<_>>(), &[]).unwrap();
+    let subjects = Subjects::of_packs(gpu, &packs().iter().collect::<Vec<_>>(), &[]).unwrap();
     for method in Method::ALL {
         assert!(subjects.shown.iter().any(|shown| shown.method == *method), "{} is not shown", method.name());
     }

@@ -3,34 +3,34 @@
 //! A tile's density at s is a mean of the texels around s, so it is zero but where one of them is not. Texels that 8 bits
 //! would round to zero count as zero. Conservative: a cell is set if any of its points may be reached.
 
+use super::baked::{BakedNdfMaps, Material};
+use super::eval::matrix;
 use glam::{Mat2, Vec2};
-use glint_bake_core::ndf_maps::baked::{BakedNdfMaps, Material};
-use glint_bake_core::ndf_maps::eval::matrix;
-use glint_formats::ndf_maps::{DensityStorage, TileRecord};
+use glint_formats::ndf_maps::{DensityStorage, REACH_CELLS, TileRecord};
 use half::f16;
 
-/// Cells of the mask along an axis of [−1, 1]², `GLINT_NDF_REACH_CELLS`.
-const CELLS: usize = 128;
 /// Cells along an axis in which the example's own reach is found first.
 const LOCAL_CELLS: usize = 512;
 /// A texel of this part of the largest one of its tile is what √ in 8 bits rounds to zero.
 const NOTHING: f32 = (0.5 / 255.0) * (0.5 / 255.0);
 
-/// The mask, a bit a cell, row by row from s = (−1, −1).
-pub fn mask(material: &Material) -> Vec<u32> {
+/// The mask: a row of cells a record, a bit a cell, from s = (−1, −1) on.
+pub(super) fn mask(material: &Material) -> [[u32; 4]; REACH_CELLS] {
     let local = LocalReach::new(&material.maps);
     let transforms: Vec<Mat2> = material.placement.palette.iter().map(|entry| matrix(entry.normal_to_local)).collect();
-    let mut words = vec![0u32; CELLS * CELLS / 32];
-    let half = Vec2::splat(1.0 / CELLS as f32);
-    for k in 0..CELLS * CELLS {
-        let middle = Vec2::new((k % CELLS) as f32 + 0.5, (k / CELLS) as f32 + 0.5) * (2.0 * half) - 1.0;
-        let reached = transforms.iter().any(|m| {
-            let extent = m.x_axis.abs() * half.x + m.y_axis.abs() * half.y;
-            local.any(*m * middle - extent, *m * middle + extent)
-        });
-        words[k / 32] |= u32::from(reached) << (k % 32);
+    let mut rows = [[0; 4]; REACH_CELLS];
+    let half = Vec2::splat(1.0 / REACH_CELLS as f32);
+    for (y, row) in rows.iter_mut().enumerate() {
+        for x in 0..REACH_CELLS {
+            let middle = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) * (2.0 * half) - 1.0;
+            let reached = transforms.iter().any(|m| {
+                let extent = m.x_axis.abs() * half.x + m.y_axis.abs() * half.y;
+                local.any(*m * middle - extent, *m * middle + extent)
+            });
+            row[x / 32] |= u32::from(reached) << (x % 32);
+        }
     }
-    words
+    rows
 }
 
 /// Sums of reached cells of the example's disk over the rectangles from the first one.
@@ -94,7 +94,7 @@ fn sum_up(values: &mut [i32], side: usize) {
 fn texels_over_nothing(maps: &BakedNdfMaps, tile: &TileRecord) -> Vec<[u32; 2]> {
     let bytes = maps.params.storage.texel_bytes() as usize;
     let count = (tile.width() * tile.height()) as usize;
-    let first = tile.texel_offset as usize * bytes;
+    let first = tile.first as usize * bytes;
     let values: Vec<f32> = maps.density[first..first + count * bytes]
         .chunks_exact(bytes)
         .map(|b| match maps.params.storage {
