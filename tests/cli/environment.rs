@@ -121,7 +121,7 @@ fn what_cannot_be_used_is_refused_with_its_reason() {
         (&["--max-moment-error", "-1"], 2),
         (&["--floor", "0"], 2),
         (&["--level-choice", "log-uniform", "--levels", "auto"], 2),
-        (&["--levels", "1", "--coloured"], 2),
+        (&["--coloured", "--levels", "1"], 2),
         (&["--max-memory", "64K"], 6),
     ] {
         case.refuses(flags, code, flags[0]);

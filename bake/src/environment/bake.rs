@@ -56,7 +56,7 @@ pub fn bake(image: &EnvironmentImage, options: &EnvironmentOptions, progress: &d
     environment.albedo = albedo::table()
         .into_iter()
         .flat_map(|areas| [areas.scale, areas.bias, areas.reflecting, areas.whole])
-        .map(|value| half_bits(value))
+        .map(half_bits)
         .collect();
     quality::measure(image, options.measured_texels, &mut environment, progress);
     check_error(&environment)?;

@@ -224,8 +224,8 @@ fn glint_lobes_covariance(sigmas: vec2f, correlation: f32) -> vec3f {
 // stands for the largest variance.
 fn glint_lobes_near_rim(mean: vec2f, covariance: vec3f) -> bool {
     let to_rim = 1.0 - length(mean);
-    let largest = max(covariance.x, covariance.z) + abs(covariance.y);
-    return glint_lobes_rim && !(to_rim > 0.0 && to_rim * to_rim > 25.0 * largest);
+    return glint_lobes_rim
+        && !(to_rim > 0.0 && to_rim * to_rim > 25.0 * (max(covariance.x, covariance.z) + abs(covariance.y)));
 }
 
 // Mass inside the disk of a Gaussian that is wide or near the rim: a sum over strips across the line from the disk's middle

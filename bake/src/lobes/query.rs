@@ -58,7 +58,7 @@ impl Default for QuerySettings {
 
 impl QuerySettings {
     /// Few lobes, for pictures: about two cells of the map's lobes, or some twenty boxes, a footprint. What that costs in error
-    /// stands in docs/viewer-report.md beside the time.
+    /// stands in docs/reports/frames.md beside the time.
     pub fn realtime() -> QuerySettings {
         QuerySettings {
             cell_sigmas: 0.18,

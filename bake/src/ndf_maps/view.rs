@@ -136,7 +136,7 @@ impl Material {
         let mut row = slot_at((widened.mean.y - reach).max(low.y), record.tiles_y, size.y, edge);
         loop {
             let start = row.period + row.index as f32 * edge;
-            if !(start <= last) {
+            if start > last || start.is_nan() || last.is_nan() {
                 return;
             }
             let y = 0.5 * (start + (start + edge).min(row.period + size.y));

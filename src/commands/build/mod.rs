@@ -44,7 +44,7 @@ pub struct Args {
     pub threads: Option<u32>,
     /// Packs to work on at a time; memory grows with it [default: as many as threads, at most 4]
     ///
-    /// Memory does not grow with the number of packs.
+    /// It does not grow with the number of packs.
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
     #[arg(help_heading = "Run")]
     pub in_flight: Option<usize>,

@@ -28,7 +28,7 @@ fn shade_ndf_settings() -> GlintNdfSettings {
         return GlintNdfSettings(1.0, 0.75, 128u, 1u, 2.8, 0u);
     }
     // Tiles four times as large against the footprint, and a narrower one; of random placement two by two places or more, each as
-    // one tile: docs/viewer-report.md has the error.
+    // one tile: docs/reports/frames.md has the error.
     return GlintNdfSettings(4.0, 1.0, 32u, 0u, 2.0, 2u);
 }
 
