@@ -66,16 +66,19 @@ impl Failure {
     }
 }
 
-/// What went wrong. An option that is bad or asks for too much is called by its name, which is that of its flag.
+/// What went wrong. Options that are bad or ask for too much stand before a colon by their names, which are those of their flags:
+/// `entries, lobe-std: expected …`.
 fn message_of(error: &BakeError) -> String {
-    let is_name = |text: &str| text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-');
-    match error {
-        BakeError::BadOption(what) | BakeError::LimitExceeded(what)
-            if what.split_once(": ").is_some_and(|(name, _)| is_name(name) && !name.starts_with('-')) =>
-        {
-            format!("--{what}")
+    let is_name = |text: &str| {
+        text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-') && !text.starts_with('-')
+    };
+    let (BakeError::BadOption(what) | BakeError::LimitExceeded(what)) = error else { return error.to_string() };
+    match what.split_once(": ") {
+        Some((names, rest)) if names.split(", ").all(is_name) => {
+            let flags: Vec<String> = names.split(", ").map(|name| format!("--{name}")).collect();
+            format!("{}: {rest}", flags.join(", "))
         }
-        _ => error.to_string(),
+        _ => what.clone(),
     }
 }
 

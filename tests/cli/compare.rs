@@ -56,26 +56,38 @@ fn options_parameters_and_texels_that_differ_are_named() {
     let table = section(&diff, "SDTB");
     assert_eq!(table["differs"], value!(["payload"]));
     assert_ne!(table["a"]["xxh3_128"], table["b"]["xxh3_128"]);
+    assert_eq!(table["records"]["records"], table["a"]["resource"]["count"]);
+
     // The numbers, from the texels themselves.
-    let texels = |name: &str| -> Vec<f64> {
+    let sky =
+        ["environment", "sky.hdr", "--face-size", "8", "--min-face-size", "2", "--coloured", "--kernel", "ggx-nl"];
+    bake(folder.path(), &[&sky[..], &["-o", "nl.glintpack"]].concat()).ok();
+    let cubes = differences(folder.path(), "sky.glintpack", "nl.glintpack");
+    let radiance = section(&cubes, "ENRA");
+    let values = |name: &str| -> Vec<f64> {
         let pack = Pack::open(folder.path().join(name), &Limits::default()).unwrap();
-        let entry = pack.sections().iter().find(|entry| entry.kind.to_string() == "SDTB").unwrap();
+        let entry = pack.sections().iter().find(|entry| entry.kind.to_string() == "ENRA").unwrap();
         let bytes = pack.payload(entry).unwrap();
         bytes.chunks(2).map(|pair| half::f16::from_le_bytes([pair[0], pair[1]]).to_f64()).collect()
     };
-    let (a, b) = (texels("dictionary.glintpack"), texels("wide.glintpack"));
+    let (a, b) = (values("sky.glintpack"), values("nl.glintpack"));
     let apart: Vec<f64> = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).collect();
     let max = apart.iter().copied().fold(0.0, f64::max);
-    let found = &table["texels"];
-    assert_eq!((found["max"].as_f64(), &found["texels"]), (Some(max), &a.len().into()));
+    let found = &radiance["texels"];
+    assert!(max > 0.0);
+    assert_eq!((found["max"].as_f64(), &found["texels"]), (Some(max), &(a.len() / 4).into()));
     let mean = apart.iter().sum::<f64>() / a.len() as f64;
     assert!((found["mean"].as_f64().unwrap() - mean).abs() <= 1e-12 * mean);
-    let [column, row] = [3, 4].map(|k| found["max_at"][k].as_u64().unwrap() as usize);
-    assert_eq!(apart[row * 64 + column], max);
+    let [mip, layer, face, column, row, component] =
+        [0, 1, 2, 3, 4, 5].map(|k| found["max_at"][k].as_u64().unwrap() as usize);
+    let edge = 8 >> mip;
+    let texels_before: usize = (0..mip).map(|mip| 6 * (8 >> mip) * (8 >> mip)).sum();
+    let texel = texels_before + ((6 * layer + face) * edge + row) * edge + column;
+    assert_eq!(apart[4 * texel + component], max);
 
     let text = info(folder.path(), &["--diff", "dictionary.glintpack", "wide.glintpack"]);
     for part in
-        ["a: dictionary.glintpack", "options.lobe-std", "0.02 → 0.03", "SDTB \"dictionary\": payload", "texels differ"]
+        ["a: dictionary.glintpack", "options.lobe-std", "0.02 → 0.03", "SDTB \"dictionary\": payload", "records differ"]
     {
         assert!(text.stdout.contains(part), "{part} is missing from:\n{}", text.stdout);
     }
@@ -95,12 +107,12 @@ fn sections_of_one_pack_records_and_codecs_are_named() {
 
     bake(folder.path(), &["dictionary", "--marginals", "3", "--compress", "-o", "small.glintpack"]).ok();
     let diff = differences(folder.path(), "dictionary.glintpack", "small.glintpack");
-    for kind in ["SDPP", "SDTB"] {
+    for kind in ["SDPP", "SDUB", "SDTB"] {
         let change = section(&diff, kind);
         assert_eq!(change["differs"], value!(["codec"]));
         assert_eq!(change["a"]["xxh3_128"], change["b"]["xxh3_128"]);
     }
-    assert_eq!(diff["sections"].as_array().unwrap().len(), 2);
+    assert_eq!(diff["sections"].as_array().unwrap().len(), 3);
 }
 
 #[test]

@@ -27,7 +27,7 @@ fn the_default_dictionary_verifies_and_is_described() {
     assert_eq!(report["provenance"][0]["options"][0], serde_json::json!(["marginals", "192"]));
 
     let text = case.info(&[]).ok().stdout;
-    for part in ["SDTB \"dictionary\"", "buffer", "192 marginals", "α 0.5", "KS to the target 0.001"] {
+    for part in ["SDTB \"dictionary\"", "196608 × 4 bytes", "192 marginals", "α 0.5", "KS to the target 0.001"] {
         assert!(text.contains(part), "{part} is missing from:\n{text}");
     }
 }

@@ -105,7 +105,7 @@ impl DictionaryOptions {
         let narrowest = MIN_LOBE_SPACINGS * self.spacing();
         if self.lobe_std < narrowest {
             return bad(format!(
-                "lobe-std: expected {narrowest:.5} or more for {} entries, {:.5} apart, or {} entries or more, found {}: a \
+                "entries, lobe-std: expected a lobe of {narrowest:.5} or more for {} entries, {:.5} apart, or {} entries or more, found {}: a \
                  lobe can fall between two entries and leave its table empty",
                 self.entries,
                 self.spacing(),

@@ -158,8 +158,12 @@ pub fn parts(names: &[&str]) -> Vec<&'static Shader> {
 /// # Panics
 /// If a file is not in [`modules`]: names are constants of this workspace.
 pub fn compose(names: &[&str]) -> String {
-    let lines = parts(names).into_iter().flat_map(|module| module.source.lines());
-    let lines = lines.filter(|line| !line.starts_with("#import "));
+    parts(names).into_iter().map(text).collect()
+}
+
+/// The text of a file alone, without its `#import` lines.
+pub fn text(shader: &Shader) -> String {
+    let lines = shader.source.lines().filter(|line| !line.starts_with("#import "));
     lines.flat_map(|line| [line, "\n"]).collect()
 }
 

@@ -296,7 +296,7 @@ fn hard_cases_are_finite_on_the_gpu_too() {
     // By loads, and by samplers as the viewer has it.
     let by_samplers = {
         let library = ["bind_area_light_sampler", "ggx"];
-        glint_shaders::compose(&library) + glint_shaders::module("query_area_light").unwrap().source
+        glint_shaders::compose(&library) + &glint_shaders::text(glint_shaders::module("query_area_light").unwrap())
     };
     for source in [&glint_shaders::compose(&["query_area_light"]), &by_samplers] {
         for map in &maps {
