@@ -3,6 +3,7 @@
 //! Functions have the names of the twin's with `glint_` in front. A file names the files that it calls in lines `#import
 //! <method>::<file>`, and lists on top the accessors that the including program defines; no file has bindings.
 
+use crate::methods::SHADERS;
 pub use crate::shader::Shader;
 
 /// Ground that several methods stand on.
@@ -14,19 +15,7 @@ const GROUND: &[Shader] = &[
     Shader { name: "hash", source: include_str!("hash.wgsl") },
 ];
 
-/// The files of every method. A new method adds its row here.
-const METHODS: &[&[Shader]] = &[
-    crate::dictionary::SHADERS,
-    crate::area_light::SHADERS,
-    crate::counting::SHADERS,
-    crate::environment::SHADERS,
-    crate::ndf_maps::SHADERS,
-    crate::lobes::SHADERS,
-    crate::synthesis::SHADERS,
-    crate::surface::SHADERS,
-];
-
 /// Every WGSL file of the run time.
 pub fn all() -> impl Iterator<Item = &'static Shader> {
-    GROUND.iter().chain(METHODS.iter().copied().flatten())
+    GROUND.iter().chain(SHADERS.iter().copied().flatten())
 }

@@ -1,23 +1,12 @@
-//! The section kinds this version knows. A new method adds its list here.
+//! The section kinds this version knows.
 
 use crate::container::{FourCc, KnownKind, SectionEntry};
 use crate::issue::{Issue, IssueCode};
-use crate::{area_light, dictionary, environment, lobes, ndf_maps, provenance, synthesis};
-
-/// Every kind this version reads, a list a method.
-const METHODS: &[&[KnownKind]] = &[
-    provenance::KINDS,
-    ndf_maps::KINDS,
-    dictionary::KINDS,
-    environment::KINDS,
-    area_light::KINDS,
-    lobes::KINDS,
-    synthesis::KINDS,
-];
+use crate::methods::KINDS;
 
 /// Every kind this version reads.
 pub fn all() -> impl Iterator<Item = &'static KnownKind> {
-    METHODS.iter().copied().flatten()
+    KINDS.iter().copied().flatten()
 }
 
 /// What this version knows of a kind.

@@ -8,23 +8,17 @@
 #[cfg(target_endian = "big")]
 compile_error!("glint-formats reads little-endian records in place and is not written for big-endian machines");
 
-pub mod area_light;
 pub mod binding;
 mod bytes;
 pub mod container;
-pub mod dictionary;
-pub mod environment;
 mod error;
 pub mod export;
 mod issue;
 pub mod kinds;
-pub mod lobes;
-pub mod ndf_maps;
+mod methods;
 mod pack;
 pub mod params;
-pub mod provenance;
 mod sections;
-pub mod synthesis;
 mod verify;
 pub mod vk_format;
 mod wrap;
@@ -34,6 +28,7 @@ pub use container::{
 };
 pub use error::{FormatError, OpenError};
 pub use issue::{Issue, IssueCode, Severity};
+pub use methods::*;
 pub use pack::Pack;
 pub use verify::validate;
 pub use wrap::Wrap;

@@ -1,9 +1,9 @@
 //! All sections of a pack with their payloads, as the checks of contents see them.
 
-use crate::container::{FourCc, Index, Resource, SectionEntry};
+use crate::container::{FourCc, Index, KnownKind, Resource, SectionEntry};
 use crate::error::FormatError;
 use crate::issue::{Issue, IssueCode};
-use crate::{kinds, params};
+use crate::params;
 use serde::de::DeserializeOwned;
 use std::borrow::Cow;
 
@@ -13,6 +13,8 @@ pub(crate) struct Sections<'a> {
     pub entries: &'a [SectionEntry],
     pub index: &'a Index,
     pub payloads: Vec<Option<Cow<'a, [u8]>>>,
+    /// What this version knows of a kind.
+    pub known: fn(FourCc) -> Option<&'static KnownKind>,
 }
 
 /// One section of a kind and version this program reads, with a payload that its checksum vouches for.
@@ -58,7 +60,7 @@ impl Sections<'_> {
 
     fn load(&self, i: usize) -> Option<Loaded<'_>> {
         let entry = &self.entries[i];
-        let read = kinds::known(entry.kind).is_some_and(|known| known.version == entry.version);
+        let read = (self.known)(entry.kind).is_some_and(|known| known.version == entry.version);
         let payload = self.payloads[i].as_deref()?;
         read.then_some(Loaded { entry, payload })
     }

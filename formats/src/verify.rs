@@ -2,22 +2,9 @@
 
 use crate::container::{Limits, Structure, read_payload};
 use crate::issue::Issue;
+use crate::kinds;
+use crate::methods::CHECKS;
 use crate::sections::Sections;
-use crate::{area_light, dictionary, environment, kinds, lobes, ndf_maps, provenance, synthesis};
-
-/// A check of the contents of some kinds.
-type Check = fn(&Sections<'_>, &mut Vec<Issue>);
-
-/// Every check of contents. A new method adds its row here.
-const CHECKS: &[Check] = &[
-    provenance::check::check,
-    ndf_maps::check::check,
-    dictionary::check::check,
-    environment::check::check,
-    area_light::check::check,
-    lobes::check::check,
-    synthesis::check::check,
-];
 
 /// Everything that is wrong with `bytes`; nothing when it is a good pack. Never panics, whatever the bytes.
 pub fn validate(bytes: &[u8], limits: &Limits) -> Vec<Issue> {
@@ -41,7 +28,7 @@ pub(crate) fn verify(bytes: &[u8], structure: &Structure) -> Vec<Issue> {
             }
         }
     }
-    let sections = Sections { entries: &structure.entries, index: &structure.index, payloads };
+    let sections = Sections { entries: &structure.entries, index: &structure.index, payloads, known: kinds::known };
     for check in CHECKS {
         check(&sections, &mut issues);
     }

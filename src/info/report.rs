@@ -5,7 +5,7 @@ use crate::exit::{Exit, Failure};
 use crate::methods;
 use crate::methods::contents::{Contents, decode_all};
 use glint_formats::provenance::{PROVENANCE, Provenance};
-use glint_formats::{Issue, IssueCode, Limits, OpenError, Pack, SectionEntry, Severity};
+use glint_formats::{Issue, IssueCode, Limits, OpenError, Pack, Resource, SectionEntry, Severity};
 use serde::Serialize;
 use std::path::Path;
 
@@ -30,6 +30,8 @@ pub struct Report {
     pub issues: Vec<Issue>,
     /// The section table.
     pub sections: Vec<SectionEntry>,
+    /// What a GPU holds of each material, in the order of the table.
+    pub gpu_bytes: Vec<GpuBytes>,
     /// What it holds of each method.
     #[serde(flatten)]
     pub contents: Contents,
@@ -39,6 +41,25 @@ pub struct Report {
     pub provenance: Vec<Provenance>,
     #[serde(skip)]
     pack: Option<Pack>,
+}
+
+/// Bytes of a material's sections on a GPU.
+#[derive(Debug, PartialEq, Eq, Serialize)]
+pub struct GpuBytes {
+    /// Name of the material.
+    pub name: String,
+    /// Bytes of its textures and buffers once decompressed: of all sections but parameters.
+    pub bytes: u64,
+}
+
+impl GpuBytes {
+    fn all_of(pack: &Pack) -> Vec<GpuBytes> {
+        let bytes_of = |name: &str| {
+            let own = pack.sections().iter().filter(|entry| entry.name == name);
+            own.filter(|entry| entry.resource != Resource::Parameters).map(|entry| entry.raw_len).sum()
+        };
+        pack.names().into_iter().map(|name| GpuBytes { name: name.to_owned(), bytes: bytes_of(name) }).collect()
+    }
 }
 
 impl Report {
@@ -72,6 +93,7 @@ impl Report {
             version: None,
             issues: Vec::new(),
             sections: Vec::new(),
+            gpu_bytes: Vec::new(),
             contents: methods::describe(None),
             parameters: Vec::new(),
             provenance: Vec::new(),
@@ -83,6 +105,7 @@ impl Report {
         let mut report = Report::empty(path, pack.file_len());
         report.version = Some(pack.version());
         report.sections = pack.sections().to_vec();
+        report.gpu_bytes = GpuBytes::all_of(&pack);
         // Checksums run faster than a disk reads, so every byte is checked even when only a summary is wanted.
         report.issues = pack.verify();
         if !report.is_damaged() {

@@ -23,6 +23,14 @@ impl Report {
         for section in &self.sections {
             line(&mut out, section_line(section, width));
         }
+        if !self.gpu_bytes.is_empty() {
+            line(&mut out, String::new());
+            line(&mut out, "on the GPU".into());
+            let width = self.gpu_bytes.iter().map(|of| of.name.chars().count()).max().unwrap_or(0);
+            for of in &self.gpu_bytes {
+                line(&mut out, format!("  {:<width$}  {} bytes", of.name, of.bytes));
+            }
+        }
         for item in self.contents.items() {
             line(&mut out, String::new());
             out.push_str(&item.to_text());

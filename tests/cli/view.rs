@@ -1,7 +1,7 @@
 //! `glint-view`: pictures, turntables, comparison, the list, the bench, what it refuses. Without an adapter the tests say that
 //! they are skipped; with `GLINT_REQUIRE_ADAPTER=1` they fail instead.
 
-use crate::support::{Outcome, packs, run};
+use crate::support::{Outcome, info, json, packs, run};
 use std::fs;
 use std::path::Path;
 
@@ -157,4 +157,38 @@ fn what_cannot_be_shown_is_refused() {
         refuses(&["dictionary.glintpack", "--method", "lobes", "--headless", "a.png"], 2, "there is dictionary");
         refuses(&["dictionary.glintpack", "--against", "lobes", "--headless", "a.png"], 2, "there is dictionary");
     }
+}
+
+/// A layered material binds the sections of both its materials and its own.
+#[test]
+fn the_list_has_the_bytes_that_glint_info_has() {
+    let Some(folder) = folder() else { return };
+    let mut compared = 0;
+    for pack in packs().1 {
+        let report = json(&info(folder.path(), &[pack, "--json"]).ok().stdout);
+        let bytes_of = |name: &str| {
+            let all = report["gpu_bytes"].as_array().unwrap();
+            all.iter().find(|of| of["name"] == name).map_or(0, |of| of["bytes"].as_u64().unwrap())
+        };
+        let listed = view(folder.path(), &[pack, "--list"]).ok().stdout;
+        for line in listed.lines().filter(|line| line.ends_with(" bytes on the GPU")) {
+            let (subject, bytes) = line.trim_end_matches(" bytes on the GPU").rsplit_once("  ").unwrap();
+            let Some((_, name)) = subject.trim().split_once(':') else { continue };
+            let layers = report["layers"].as_array().unwrap().iter().find(|layers| {
+                let [coat, base] = ["coat", "base"].map(|layer| layers[layer].as_str().unwrap());
+                name == format!("{coat}+{base}")
+            });
+            let expected = match layers {
+                None => bytes_of(name),
+                Some(layers) => {
+                    let [coat, base] = ["coat", "base"].map(|layer| layers[layer].as_str().unwrap());
+                    bytes_of(coat) + bytes_of(base) + bytes_of(&format!("{coat}:{base}"))
+                }
+            };
+            assert!(expected > 0, "{pack}: {line}");
+            assert_eq!(bytes.trim().parse::<u64>().unwrap(), expected, "{pack}: {line}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 8, "only {compared} materials were compared");
 }
