@@ -5,16 +5,18 @@ use glam::{DVec2, Vec2};
 use glint_bake_core::error::Result;
 use glint_bake_core::footprint::Footprint;
 use glint_bake_core::ndf_maps::bake::bake_maps;
-use glint_bake_core::ndf_maps::baked::Material;
+use glint_bake_core::ndf_maps::baked::{BakedNdfMaps, Material};
 use glint_bake_core::ndf_maps::eval::{EvalSettings, Terms};
 use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, StochasticOptions, TransformRanges};
 use glint_bake_core::ndf_maps::placement::place;
 use glint_bake_core::ndf_maps::quality::{FootprintErrors, footprint_errors};
 use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
+use glint_bake_core::ndf_maps::sections::to_sections;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::quality::sweep::{ANISOTROPIES, FOOTPRINTS, SIGMAS_TEXELS, footprints as sweep_footprints};
 use glint_formats::ndf_maps::{DensityStorage, MeasuredError};
+use glint_formats::{Codec, Resource};
 use std::time::Instant;
 
 /// Everything measured of one example.
@@ -31,7 +33,10 @@ pub struct Example {
 pub struct Setting {
     pub roughness: f64,
     pub label: String,
-    pub bytes: usize,
+    /// Bytes of all sections that a GPU holds, tiled placement.
+    pub gpu_bytes: usize,
+    /// Bytes of tiles, normals and densities with each texel once, as the file of an engine that expands them itself would have them.
+    pub compact_bytes: usize,
     pub milliseconds: f64,
     pub error: MeasuredError,
     /// No other setting of this roughness has fewer bytes and a smaller mean error.
@@ -176,18 +181,23 @@ fn settings(map: &NormalMap, scale: &Settings) -> Result<Vec<Setting>> {
             let options = NdfMapsOptions { roughness, max_error, storage, ..NdfMapsOptions::default() };
             let begin = Instant::now();
             let baked = bake_maps(map, &options, &Silent)?;
-            all.push(Setting {
-                roughness,
-                label: label(storage, max_error),
-                bytes: baked.compact_bytes(),
-                milliseconds: begin.elapsed().as_secs_f64() * 1e3,
-                error: baked.params.measured,
-                on_front: false,
-            });
+            let milliseconds = begin.elapsed().as_secs_f64() * 1e3;
+            let (compact_bytes, error) = (baked.compact_bytes(), baked.params.measured);
+            let gpu_bytes = gpu_bytes(map, roughness, baked)?;
+            let label = label(storage, max_error);
+            all.push(Setting { roughness, label, gpu_bytes, compact_bytes, milliseconds, error, on_front: false });
         }
         mark_front(&mut all[first..]);
     }
     Ok(all)
+}
+
+/// Bytes of the sections of a tiled material of these maps, parameters left out.
+fn gpu_bytes(map: &NormalMap, roughness: f64, maps: BakedNdfMaps) -> Result<usize> {
+    let placement = place(map, roughness, &PlacementOptions::Tiled(TransformRanges::default()))?;
+    let sections = to_sections("", &Material { maps, placement }, Codec::None);
+    let on_gpu = sections.iter().filter(|section| section.resource != Resource::Parameters);
+    Ok(on_gpu.map(|section| section.payload.len()).sum())
 }
 
 fn label(storage: DensityStorage, max_error: f64) -> String {
@@ -200,9 +210,10 @@ fn label(storage: DensityStorage, max_error: f64) -> String {
 
 fn mark_front(settings: &mut [Setting]) {
     for k in 0..settings.len() {
-        let (bytes, error) = (settings[k].bytes, settings[k].error.mean);
+        let (bytes, error) = (settings[k].gpu_bytes, settings[k].error.mean);
         let beaten = settings.iter().any(|other| {
-            (other.bytes < bytes && other.error.mean <= error) || (other.bytes <= bytes && other.error.mean < error)
+            (other.gpu_bytes < bytes && other.error.mean <= error)
+                || (other.gpu_bytes <= bytes && other.error.mean < error)
         });
         settings[k].on_front = !beaten;
     }

@@ -53,13 +53,17 @@ fn load(settings: &Settings) -> Result<Vec<(PathBuf, NormalMap)>, Failure> {
 
 fn tables(document: &mut Document, measured: &Example) {
     document.paragraph("Bake: every tile against the bake's own exact grid.");
-    let mut table = Table::new(2, "σ_r | storage | KiB | bake ms | E₁ mean | p95 | worst | energy | ");
+    let mut table = Table::new(
+        2,
+        "σ_r | storage | KiB on the GPU | KiB, each texel once | bake ms | E₁ mean | p95 | worst | energy | ",
+    );
     for s in &measured.settings {
         table.row(format!(
-            "{} | {} | {:.1} | {:.0} | {} | {} | {} | {:.0e} | {}",
+            "{} | {} | {:.1} | {:.1} | {:.0} | {} | {} | {} | {:.0e} | {}",
             s.roughness,
             s.label,
-            s.bytes as f64 / 1024.0,
+            s.gpu_bytes as f64 / 1024.0,
+            s.compact_bytes as f64 / 1024.0,
             s.milliseconds,
             percent(s.error.mean),
             percent(s.error.p95),
@@ -135,7 +139,7 @@ fn percent(error: f64) -> String {
 
 /// Bytes against error: a line for each roughness along its Pareto front, circles for what lies off it.
 fn figure(name: &str, settings: &[Setting]) -> Figure {
-    let point = |s: &Setting| (s.bytes as f64 / 1024.0, s.error.mean * 100.0);
+    let point = |s: &Setting| (s.gpu_bytes as f64 / 1024.0, s.error.mean * 100.0);
     let mut roughnesses: Vec<f64> = settings.iter().map(|s| s.roughness).collect();
     roughnesses.dedup();
     let mut series = Vec::new();
