@@ -4,6 +4,7 @@ use glam::{IVec2, Vec2};
 use glint_formats::Wrap;
 
 /// The index, from 0 to `size` − 1, of what lies at index `i` of an axis of `size` texels.
+#[inline]
 pub(crate) fn wrapped(i: i32, size: i32, wrap: Wrap) -> i32 {
     match wrap {
         Wrap::Repeat => i.rem_euclid(size),
@@ -12,6 +13,7 @@ pub(crate) fn wrapped(i: i32, size: i32, wrap: Wrap) -> i32 {
 }
 
 /// [`wrapped`] for indices that may lie far out.
+#[inline]
 pub(crate) fn wrapped_far(i: i64, size: i64, wrap: Wrap) -> i64 {
     match wrap {
         Wrap::Repeat => i.rem_euclid(size),
@@ -21,6 +23,7 @@ pub(crate) fn wrapped_far(i: i64, size: i64, wrap: Wrap) -> i64 {
 
 /// What linear filtering reads at `u`, in texels with centres at i + ½: the upper left of the four texels, and how far `u` lies
 /// from its centre towards those of the others, 0 to 1.
+#[inline]
 pub(crate) fn filtered_texels(u: Vec2) -> (IVec2, Vec2) {
     let p = u - 0.5;
     let cell = p.floor();
