@@ -12,15 +12,6 @@ pub(crate) fn wrapped(i: i32, size: i32, wrap: Wrap) -> i32 {
     }
 }
 
-/// [`wrapped`] for indices that may lie far out.
-#[inline]
-pub(crate) fn wrapped_far(i: i64, size: i64, wrap: Wrap) -> i64 {
-    match wrap {
-        Wrap::Repeat => i.rem_euclid(size),
-        Wrap::Clamp => i.clamp(0, size - 1),
-    }
-}
-
 /// What linear filtering reads at `u`, in texels with centres at i + ½: the upper left of the four texels, and how far `u` lies
 /// from its centre towards those of the others, 0 to 1.
 #[inline]

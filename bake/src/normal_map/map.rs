@@ -2,7 +2,6 @@
 
 use super::raw::crop_rows;
 use crate::error::Result;
-use crate::wrap::wrapped_far;
 use glam::{DMat2, DVec2};
 use glint_formats::Wrap;
 
@@ -23,11 +22,10 @@ pub struct NormalMap {
 impl NormalMap {
     /// Projected normal of texel (i, j); indices beyond the edge wrap or clamp.
     pub fn texel(&self, i: i64, j: i64) -> DVec2 {
-        self.stored(wrapped_far(i, self.width as i64, self.wrap), wrapped_far(j, self.height as i64, self.wrap))
-    }
-
-    /// Projected normal of texel (i, j) within the map.
-    fn stored(&self, i: i64, j: i64) -> DVec2 {
+        let (i, j) = match self.wrap {
+            Wrap::Repeat => (i.rem_euclid(self.width as i64), j.rem_euclid(self.height as i64)),
+            Wrap::Clamp => (i.clamp(0, self.width as i64 - 1), j.clamp(0, self.height as i64 - 1)),
+        };
         let [x, y] = self.projected[j as usize * self.width as usize + i as usize];
         DVec2::new(x as f64, y as f64)
     }
@@ -37,11 +35,9 @@ impl NormalMap {
         let p = u - 0.5;
         let cell = p.floor();
         let f = p - cell;
-        // Each column and row is wrapped once for the two texels that lie in it.
-        let around = |first: f64, size: u32| [0, 1].map(|k| wrapped_far(first as i64 + k, size as i64, self.wrap));
-        let ([left, right], [upper, lower]) = (around(cell.x, self.width), around(cell.y, self.height));
-        let (s00, s10) = (self.stored(left, upper), self.stored(right, upper));
-        let (s01, s11) = (self.stored(left, lower), self.stored(right, lower));
+        let (i, j) = (cell.x as i64, cell.y as i64);
+        let (s00, s10) = (self.texel(i, j), self.texel(i + 1, j));
+        let (s01, s11) = (self.texel(i, j + 1), self.texel(i + 1, j + 1));
         let top = s00.lerp(s10, f.x);
         let bottom = s01.lerp(s11, f.x);
         let du = (s10 - s00).lerp(s11 - s01, f.y);
