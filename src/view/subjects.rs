@@ -23,11 +23,9 @@ pub struct Subjects {
 }
 
 impl Subjects {
-    /// What the user should know: which data was converted for this adapter or left out.
+    /// What the user should know: what of the packs is left out.
     pub fn notes(&self) -> Vec<String> {
-        let resources = self.shown.iter().map(|shown| &shown.data).chain(&self.environment);
-        let mut notes: Vec<String> = resources.flat_map(|data| data.notes.clone()).collect();
-        notes.extend(self.left_out.clone());
+        let mut notes = self.left_out.clone();
         notes.sort_unstable();
         notes.dedup();
         notes

@@ -24,7 +24,6 @@ pub struct GpuTexture {
 pub struct ResourceSet {
     entries: Vec<wgpu::BindGroupLayoutEntry>,
     resources: Vec<Resource>,
-    notes: Vec<String>,
     bytes: u64,
     /// The section that the next resource holds.
     next: Option<FourCc>,
@@ -54,8 +53,6 @@ pub struct Resources {
     pub layout: wgpu::BindGroupLayout,
     /// The group.
     pub group: wgpu::BindGroup,
-    /// What the user should know: formats that were converted.
-    pub notes: Vec<String>,
     /// Bytes of the sections of a pack among them.
     pub bytes: u64,
     /// The sections of a pack among them, in the order of bindings.
@@ -159,12 +156,6 @@ impl ResourceSet {
         self
     }
 
-    /// Says something to the user.
-    pub fn note(&mut self, text: impl Into<String>) -> &mut Self {
-        self.notes.push(text.into());
-        self
-    }
-
     /// The bind group.
     pub fn finish(self, gpu: &Gpu) -> Resources {
         let layout = gpu
@@ -188,6 +179,6 @@ impl ResourceSet {
             layout: &layout,
             entries: &entries,
         });
-        Resources { layout, group, notes: self.notes, bytes: self.bytes, sections: self.sections }
+        Resources { layout, group, bytes: self.bytes, sections: self.sections }
     }
 }
