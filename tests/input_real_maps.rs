@@ -79,7 +79,7 @@ fn load_all(kind: &str) -> Vec<(Row, LoadedMap)> {
 }
 
 fn find(name: &str) -> Option<&'static LoadedMap> {
-    NORMALS.iter().map(|(_, loaded)| loaded).find(|loaded| loaded.file_name == name)
+    NORMALS.iter().map(|(_, loaded)| loaded).find(|loaded| loaded.digest.name == name)
 }
 
 /// The map's vectors, to be validated once more in another way.
@@ -96,10 +96,10 @@ fn report_of(raw: &RawNormals, y: GreenAxis) -> NormalReport {
 fn measurements_agree_with_the_catalogue() {
     let tiny = load_all("tiny");
     for (row, loaded) in NORMALS.iter().chain(&tiny) {
-        let (name, report) = (&loaded.file_name, &loaded.report);
+        let (name, report) = (&loaded.digest.name, &loaded.report);
         assert_eq!(loaded.map.width as f64, row.number("width"), "{name}");
         assert_eq!(loaded.map.height as f64, row.number("height"), "{name}");
-        assert_eq!(loaded.bytes as f64, row.number("bytes"), "{name}");
+        assert_eq!(loaded.digest.bytes as f64, row.number("bytes"), "{name}");
         assert_eq!(report.below_horizon + report.zero_length, 0, "{name}");
         assert_eq!(row.number("z_le_0"), 0.0, "{name}");
         // Decoders of JPEG differ in the last bits.
@@ -125,7 +125,7 @@ fn flipped_green_is_suspected_where_the_catalogue_says_so() {
         let nearly_flat = row.text("path").contains("metal049a");
         let directx = convention.starts_with("DirectX") && !nearly_flat;
         let opengl = convention.starts_with("OpenGL") && !nearly_flat;
-        let name = &loaded.file_name;
+        let name = &loaded.digest.name;
         assert_eq!(loaded.report.flipped_green_suspected, directx, "{name} as +Y up");
         assert_eq!(loaded.warnings.iter().any(|w| w.contains("--normal-y down")), directx, "{:?}", loaded.warnings);
         let down = report_of(&vectors(&loaded.map), GreenAxis::Down);
@@ -157,8 +157,8 @@ fn crops_of_right_maps_raise_no_false_alarm() {
 #[test]
 fn seams_are_seen_where_they_are() {
     for (_, loaded) in NORMALS.iter() {
-        let expected = WITH_SEAM.contains(&loaded.file_name.as_str());
-        assert_eq!(loaded.report.seam_suspected, expected, "{}: {:?}", loaded.file_name, loaded.report);
+        let expected = WITH_SEAM.contains(&loaded.digest.name.as_str());
+        assert_eq!(loaded.report.seam_suspected, expected, "{}: {:?}", loaded.digest.name, loaded.report);
     }
 }
 

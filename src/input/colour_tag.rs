@@ -16,7 +16,7 @@ const CICP_TRANSFER_SRGB: u8 = 13;
 const GAMA_LINEAR: u32 = 100_000;
 
 /// What a file says of its colours.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct ColourTag {
     /// The tag that says sRGB.
     srgb: Option<&'static str>,

@@ -8,7 +8,7 @@ use exr::prelude::*;
 use super::error::InputError;
 use super::limits::check_size;
 use super::options::{Channels, InputOptions};
-use super::pixels::{Pixels, Values, sign_floats};
+use super::pixels::{Pixels, Stored, Values};
 
 /// Fewest bytes a chunk takes in a file: its entry in the offset table, its position and its length.
 const BYTES_PER_CHUNK: u64 = 16;
@@ -18,7 +18,6 @@ pub(super) fn decode(
     path: &std::path::Path,
     bytes: &[u8],
     options: &InputOptions,
-    notes: &mut Vec<String>,
 ) -> std::result::Result<Pixels, InputError> {
     let image = first_layer(path, bytes, options)?;
     let layer = &image.layer_data;
@@ -27,11 +26,9 @@ pub(super) fn decode(
     let values = if options.height.is_some() {
         Values::Grey(one_channel(path, channels)?)
     } else {
-        let mut colours = three_channels(path, channels, options.channels)?;
-        sign_floats(&mut colours, notes);
-        Values::Colour(colours)
+        Values::Rgb(three_channels(path, channels, options.channels)?)
     };
-    Ok(Pixels { width, height, values })
+    Ok(Pixels { width, height, values, stored: Stored::default() })
 }
 
 /// Decodes the first layer of an EXR file as linear RGB radiance; one channel is grey.

@@ -45,8 +45,8 @@ pub(super) fn check_size(
             ),
         ));
     }
-    // Three floats a texel while decoding, two floats in the finished map.
-    let needed = width * height * (decoder_bytes_per_texel + 12 + 8);
+    // Four floats a texel while decoding, two floats in the finished map.
+    let needed = width * height * (decoder_bytes_per_texel + 16 + 8);
     if needed > max_memory {
         return Err(InputError::limit(
             path,

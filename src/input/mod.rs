@@ -6,13 +6,15 @@ mod error;
 mod exr_file;
 mod format;
 mod limits;
+mod meaning;
 mod normal_map;
 mod options;
 mod pixels;
+mod primaries;
 mod raster;
 pub mod synthetic;
 
 pub use error::InputError;
 pub use limits::MAX_SIDE;
-pub use normal_map::{LoadedMap, digest, load_normal_map};
+pub use normal_map::{LoadedMap, load_normal_map};
 pub use options::{Channels, Crop, DEFAULT_MAX_MEMORY, InputOptions};

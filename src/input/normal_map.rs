@@ -11,10 +11,9 @@ use super::error::InputError;
 use super::format::{self, Format};
 use super::limits::{from_bake, read};
 use super::options::{Channels, Crop, InputOptions};
-use super::pixels::{self, Pixels, Values};
-use super::{exr_file, raster};
-use crate::exit::{Exit, Failure};
-use glint_bake_core::normal_map::{GreenAxis, NormalMap, NormalOptions, NormalReport, RawNormals};
+use super::pixels::Pixels;
+use super::{exr_file, meaning, raster};
+use glint_bake_core::normal_map::{GreenAxis, NormalMap, NormalOptions, NormalReport};
 use glint_formats::provenance::InputDigest;
 use std::path::Path;
 
@@ -28,26 +27,12 @@ pub struct LoadedMap {
     pub map: NormalMap,
     /// What was measured and mended.
     pub report: NormalReport,
-    /// Name of the file, without folders.
-    pub file_name: String,
-    /// xxh3-64 of the file's bytes, 16 hex digits.
-    pub digest: String,
-    /// Size of the file.
-    pub bytes: u64,
+    /// Name without folders, size and digest of the bytes that were read.
+    pub digest: InputDigest,
     /// What the user should know, one sentence each.
     pub warnings: Vec<String>,
     /// The convention that the file was read with, for provenance.
     pub convention: String,
-}
-
-/// Digest of the bytes that were loaded.
-pub fn digest(path: &Path, loaded: &LoadedMap) -> Result<InputDigest, Failure> {
-    let bytes = std::fs::read(path).map_err(|e| Failure::io(path, "cannot be read", &e))?;
-    if format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&bytes)) != loaded.digest {
-        let message = format!("{}: changed while it was read; run again once it is at rest", path.display());
-        return Err(Failure::new(Exit::InputOutput, message));
-    }
-    Ok(InputDigest::of(&loaded.file_name, &bytes))
 }
 
 /// Loads and validates a normal map (or, with `options.height`, a height map).
@@ -58,7 +43,11 @@ pub fn digest(path: &Path, loaded: &LoadedMap) -> Result<InputDigest, Failure> {
 pub fn load_normal_map(path: &Path, options: &InputOptions) -> Result<LoadedMap, InputError> {
     let bytes = read(path, options.max_memory)?;
     let (pixels, mut warnings) = decode(path, &bytes, options)?;
-    let raw = raw_normals(path, pixels, options, &mut warnings)?;
+    let raw = meaning::raw_normals(path, pixels, options, &mut warnings)?;
+    let raw = match options.crop {
+        Some(Crop { x, y, w, h }) => raw.crop(x, y, w, h).map_err(|e| from_bake(path, e))?,
+        None => raw,
+    };
     let normal_options =
         NormalOptions { wrap: options.wrap, y: if options.height.is_some() { GreenAxis::Up } else { options.y } };
     let (map, report) = NormalMap::from_vectors(&raw, &normal_options).map_err(|e| from_bake(path, e))?;
@@ -66,9 +55,7 @@ pub fn load_normal_map(path: &Path, options: &InputOptions) -> Result<LoadedMap,
     Ok(LoadedMap {
         map,
         report,
-        file_name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-        digest: format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&bytes)),
-        bytes: bytes.len() as u64,
+        digest: InputDigest::of(&path.file_name().unwrap_or_default().to_string_lossy(), &bytes),
         warnings,
         convention: convention(options),
     })
@@ -79,47 +66,10 @@ fn decode(path: &Path, bytes: &[u8], options: &InputOptions) -> Result<(Pixels, 
     let format = format::detect(path, bytes)?;
     let mut notes: Vec<String> = format::extension_note(path, format).into_iter().collect();
     let pixels = match format {
-        Format::Exr => exr_file::decode(path, bytes, options, &mut notes)?,
+        Format::Exr => exr_file::decode(path, bytes, options)?,
         Format::Raster(raster) => raster::decode(path, bytes, raster, options, &mut notes)?,
     };
     Ok((pixels, notes))
-}
-
-/// Colours or heights as raw normals, cropped.
-fn raw_normals(
-    path: &Path,
-    pixels: Pixels,
-    options: &InputOptions,
-    notes: &mut Vec<String>,
-) -> Result<RawNormals, InputError> {
-    let Pixels { width, height, values } = pixels;
-    let raw = match (values, options.height) {
-        (Values::Grey(heights), Some(scale)) => {
-            RawNormals::from_heights(width, height, &heights, scale, options.wrap).map_err(|e| from_bake(path, e))?
-        }
-        (Values::Colour(colours), Some(scale)) => {
-            let heights = pixels::grey_of(path, width, &colours, notes)?;
-            RawNormals::from_heights(width, height, &heights, scale, options.wrap).map_err(|e| from_bake(path, e))?
-        }
-        (Values::Grey(_), None) => {
-            return Err(InputError::bad(
-                path,
-                "the image has one channel (grey); expected a normal map in red, green, blue. For a height map give \
-                 --height SCALE, the height in texels of white",
-            ));
-        }
-        (Values::Colour(vectors), None) => match options.channels {
-            Channels::Xyz => RawNormals { width, height, vectors },
-            Channels::Xy => {
-                let xy: Vec<[f32; 2]> = vectors.iter().map(|v| [v[0], v[1]]).collect();
-                RawNormals::from_xy(width, height, &xy).map_err(|e| from_bake(path, e))?
-            }
-        },
-    };
-    match options.crop {
-        Some(Crop { x, y, w, h }) => raw.crop(x, y, w, h).map_err(|e| from_bake(path, e)),
-        None => Ok(raw),
-    }
 }
 
 /// What the measurements tell that the user should know.

@@ -9,7 +9,7 @@ use super::colour_tag::ColourTag;
 use super::error::InputError;
 use super::limits::check_size;
 use super::options::InputOptions;
-use super::pixels::{Pixels, Values, sign_floats, signed};
+use super::pixels::{Pixels, Stored, Values};
 
 /// Bytes of decoded pixels that one byte of file can stand for: deflate reaches 1032, LZW 2730, TGA runs 128. A file
 /// that promises more is cut off, and need not be allocated for.
@@ -34,11 +34,18 @@ pub(super) fn decode(
     let colour = decoder.color_type();
     check_size(path, (width as u64, height as u64), colour.bytes_per_pixel() as u64, options.max_memory)?;
     check_not_cut_off(path, bytes, format, decoder.total_bytes())?;
-    check_tags(path, bytes, format, &mut decoder, options, notes)?;
-    note_storage(decoder.original_color_type(), format, bytes, options, notes);
+    // Colour type 3 of the IHDR chunk.
+    if format == ImageFormat::Png && bytes.get(25) == Some(&3) {
+        notes.push("a palette image: at most 256 different normals".into());
+    }
+    let stored = Stored {
+        bits: bits(decoder.original_color_type()),
+        lossy: (format == ImageFormat::Jpeg).then_some("JPEG"),
+        tag: tag(bytes, format, &mut decoder),
+    };
 
     let image = DynamicImage::from_decoder(decoder).map_err(|e| from_image(path, e))?;
-    Ok(Pixels { width, height, values: values(path, image, notes)? })
+    Ok(Pixels { width, height, values: values(path, image)?, stored })
 }
 
 /// Damage that the decoders would word badly or let pass.
@@ -99,71 +106,39 @@ fn cut_off(path: &Path) -> InputError {
     InputError::bad(path, "the file is cut off: it ends before the image does; copy or export it again")
 }
 
-fn check_tags(
-    path: &Path,
-    bytes: &[u8],
-    format: ImageFormat,
-    decoder: &mut impl ImageDecoder,
-    options: &InputOptions,
-    notes: &mut Vec<String>,
-) -> Result<(), InputError> {
-    if format == ImageFormat::Png {
-        ColourTag::of_png_chunks(bytes).check(path, options, notes)?;
-    }
+/// What the file says of its colours.
+fn tag(bytes: &[u8], format: ImageFormat, decoder: &mut impl ImageDecoder) -> ColourTag {
     // A profile that cannot be read is no claim.
-    if let Ok(Some(profile)) = decoder.icc_profile() {
-        ColourTag::of_profile(&profile).check(path, options, notes)?;
-    }
-    Ok(())
-}
-
-/// Notes on how the values are stored, where that costs precision.
-fn note_storage(
-    stored: ExtendedColorType,
-    format: ImageFormat,
-    bytes: &[u8],
-    options: &InputOptions,
-    notes: &mut Vec<String>,
-) {
-    // Colour type 3 of the IHDR chunk.
-    if format == ImageFormat::Png && bytes.get(25) == Some(&3) {
-        notes.push("a palette image: at most 256 different normals".into());
-    }
-    let eight_bit = stored.bits_per_pixel() / stored.channel_count() as u16 <= 8;
-    if options.height.is_some() && eight_bit {
-        notes.push(
-            "8-bit heights: slopes come in steps of the scale / 510, which shows as terraces; prefer 16 bits".into(),
-        );
+    match decoder.icc_profile() {
+        Ok(Some(profile)) => ColourTag::of_profile(&profile),
+        _ if format == ImageFormat::Png => ColourTag::of_png_chunks(bytes),
+        _ => ColourTag::default(),
     }
 }
 
-/// Channels as floats; alpha is dropped.
-fn values(path: &Path, image: DynamicImage, notes: &mut Vec<String>) -> Result<Values, InputError> {
-    if has_varying_alpha(&image) {
-        notes.push("the alpha channel holds data (often roughness or height); ignored".into());
+/// Bits of a whole number; `None` for floats.
+fn bits(stored: ExtendedColorType) -> Option<u8> {
+    match stored {
+        ExtendedColorType::Rgb32F | ExtendedColorType::Rgba32F => None,
+        _ => Some((stored.bits_per_pixel() / u16::from(stored.channel_count())) as u8),
     }
+}
+
+/// Channels as floats.
+fn values(path: &Path, image: DynamicImage) -> Result<Values, InputError> {
     let unorm8 = |v: u8| v as f32 / 255.0;
     let unorm16 = |v: u16| v as f32 / 65535.0;
-    let float = |colours: Vec<[f32; 3]>, notes: &mut Vec<String>| {
-        let mut colours = colours;
-        sign_floats(&mut colours, notes);
-        Values::Colour(colours)
-    };
     Ok(match image {
         DynamicImage::ImageLuma8(i) => Values::Grey(i.pixels().map(|p| unorm8(p[0])).collect()),
         DynamicImage::ImageLumaA8(i) => Values::Grey(i.pixels().map(|p| unorm8(p[0])).collect()),
         DynamicImage::ImageLuma16(i) => Values::Grey(i.pixels().map(|p| unorm16(p[0])).collect()),
         DynamicImage::ImageLumaA16(i) => Values::Grey(i.pixels().map(|p| unorm16(p[0])).collect()),
-        DynamicImage::ImageRgb8(i) => Values::Colour(i.pixels().map(|p| p.0.map(|v| signed(unorm8(v)))).collect()),
-        DynamicImage::ImageRgba8(i) => {
-            Values::Colour(i.pixels().map(|p| [p[0], p[1], p[2]].map(|v| signed(unorm8(v)))).collect())
-        }
-        DynamicImage::ImageRgb16(i) => Values::Colour(i.pixels().map(|p| p.0.map(|v| signed(unorm16(v)))).collect()),
-        DynamicImage::ImageRgba16(i) => {
-            Values::Colour(i.pixels().map(|p| [p[0], p[1], p[2]].map(|v| signed(unorm16(v)))).collect())
-        }
-        DynamicImage::ImageRgb32F(i) => float(i.pixels().map(|p| p.0).collect(), notes),
-        DynamicImage::ImageRgba32F(i) => float(i.pixels().map(|p| [p[0], p[1], p[2]]).collect(), notes),
+        DynamicImage::ImageRgb8(i) => Values::Rgb(i.pixels().map(|p| p.0.map(unorm8)).collect()),
+        DynamicImage::ImageRgba8(i) => Values::Rgba(i.pixels().map(|p| p.0.map(unorm8)).collect()),
+        DynamicImage::ImageRgb16(i) => Values::Rgb(i.pixels().map(|p| p.0.map(unorm16)).collect()),
+        DynamicImage::ImageRgba16(i) => Values::Rgba(i.pixels().map(|p| p.0.map(unorm16)).collect()),
+        DynamicImage::ImageRgb32F(i) => Values::Rgb(i.pixels().map(|p| p.0).collect()),
+        DynamicImage::ImageRgba32F(i) => Values::Rgba(i.pixels().map(|p| p.0).collect()),
         other => {
             return Err(InputError::unsupported(
                 path,
@@ -171,17 +146,6 @@ fn values(path: &Path, image: DynamicImage, notes: &mut Vec<String>) -> Result<V
             ));
         }
     })
-}
-
-fn has_varying_alpha(image: &DynamicImage) -> bool {
-    match image {
-        DynamicImage::ImageLumaA8(i) => i.pixels().any(|p| p[1] != u8::MAX),
-        DynamicImage::ImageRgba8(i) => i.pixels().any(|p| p[3] != u8::MAX),
-        DynamicImage::ImageLumaA16(i) => i.pixels().any(|p| p[1] != u16::MAX),
-        DynamicImage::ImageRgba16(i) => i.pixels().any(|p| p[3] != u16::MAX),
-        DynamicImage::ImageRgba32F(i) => i.pixels().any(|p| p[3] != 1.0),
-        _ => false,
-    }
 }
 
 fn from_image(path: &Path, error: ImageError) -> InputError {

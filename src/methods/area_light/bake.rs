@@ -3,7 +3,7 @@
 use super::args::Args;
 use crate::cli::Terminal;
 use crate::exit::Failure;
-use crate::input::{LoadedMap, digest, load_normal_map};
+use crate::input::{LoadedMap, load_normal_map};
 use crate::methods::bake::FinishedPack;
 use crate::methods::method::provenance;
 use crate::pack;
@@ -15,7 +15,7 @@ use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_formats::Codec;
 use glint_formats::container::full_mip_count;
-use glint_formats::provenance::{InputDigest, Provenance};
+use glint_formats::provenance::Provenance;
 
 /// What makes a pack smaller.
 const SMALLER: &str = "give --format snorm8, or a part of the map with --crop";
@@ -26,11 +26,10 @@ pub fn draft(args: &Args) -> Result<((NormalMap, AreaLightMaterial), u64), Failu
     options.validate()?;
     let name = args.name()?;
     let loaded = load_normal_map(&args.map, &args.input.options(args.run.max_memory))?;
-    let digest = digest(&args.map, &loaded)?;
     let material = area_light::bake(&loaded.map, &options, &Silent).map_err(|e| Failure::bake(&args.map, &e))?;
     let codec = if args.compress { Codec::Zstd } else { Codec::None };
     let sections = sections::to_sections(&name, &material, codec);
-    let bytes = pack::seal(&provenance_of(args, &loaded, digest), sections)?.len() as u64;
+    let bytes = pack::seal(&provenance_of(args, &loaded), sections)?.len() as u64;
     Ok(((loaded.map, material), bytes))
 }
 
@@ -42,7 +41,6 @@ pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Fai
     let delivery = args.delivery();
     delivery.check()?;
     let loaded = load_normal_map(&args.map, &args.input.options(args.run.max_memory))?;
-    let digest = digest(&args.map, &loaded)?;
     for warning in &loaded.warnings {
         terminal.warn(&format!("{}: {warning}", args.map.display()));
     }
@@ -66,7 +64,7 @@ pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Fai
     let codec = if args.compress { Codec::Zstd } else { Codec::None };
     let sections = sections::to_sections(&name, &material, codec);
     drop(material);
-    let bytes = pack::seal(&provenance_of(args, &loaded, digest), sections)?;
+    let bytes = pack::seal(&provenance_of(args, &loaded), sections)?;
     Ok(Some(FinishedPack { bytes, smaller: SMALLER }))
 }
 
@@ -92,10 +90,10 @@ fn map_bytes(args: &Args, width: u32, height: u32) -> u64 {
 }
 
 /// Where the pack comes from.
-fn provenance_of(args: &Args, loaded: &LoadedMap, digest: InputDigest) -> Provenance {
-    let notes = loaded.warnings.iter().map(|warning| format!("{}: {warning}", digest.name)).collect();
+fn provenance_of(args: &Args, loaded: &LoadedMap) -> Provenance {
+    let notes = loaded.warnings.iter().map(|warning| format!("{}: {warning}", loaded.digest.name)).collect();
     Provenance {
-        inputs: vec![digest],
+        inputs: vec![loaded.digest.clone()],
         normal_convention: args.input.normal_convention(),
         notes,
         ..provenance::<Args>("area-light", args.option_list())

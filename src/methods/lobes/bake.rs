@@ -3,7 +3,7 @@
 use super::args::Args;
 use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
-use crate::input::{LoadedMap, digest, load_normal_map};
+use crate::input::{LoadedMap, load_normal_map};
 use crate::methods::bake::FinishedPack;
 use crate::methods::method::provenance;
 use crate::pack;
@@ -16,7 +16,7 @@ use glint_bake_core::synthesis::SynthesisOptions;
 use glint_formats::Codec;
 use glint_formats::Section;
 use glint_formats::lobes::FootprintError;
-use glint_formats::provenance::{InputDigest, Provenance};
+use glint_formats::provenance::Provenance;
 use std::path::{Path, PathBuf};
 
 /// What makes a pack smaller.
@@ -37,7 +37,6 @@ pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Fai
     delivery.check()?;
     args.check_normal_map()?;
     let loaded = load_normal_map(&args.map, &args.input.options(args.run.max_memory))?;
-    let digest = digest(&args.map, &loaded)?;
     for warning in &loaded.warnings {
         terminal.warn(&format!("{}: {warning}", args.map.display()));
     }
@@ -73,7 +72,7 @@ pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Fai
     }
     terminal.detail(&format!("{}: {line}, {}", args.map.display(), loaded.convention));
     let sections = args.sections(&name, &loaded, &options, synthesis.as_ref(), terminal)?;
-    let bytes = pack::seal(&args.provenance(&options, synthesis.as_ref(), &loaded, digest), sections)?;
+    let bytes = pack::seal(&args.provenance(&options, synthesis.as_ref(), &loaded), sections)?;
     Ok(Some(FinishedPack { bytes, smaller: SMALLER }))
 }
 
@@ -123,17 +122,11 @@ impl Args {
     }
 
     /// Where the pack comes from.
-    fn provenance(
-        &self,
-        used: &LobesOptions,
-        synthesis: Option<&SynthesisOptions>,
-        loaded: &LoadedMap,
-        digest: InputDigest,
-    ) -> Provenance {
-        let notes = loaded.warnings.iter().map(|warning| format!("{}: {warning}", digest.name)).collect();
+    fn provenance(&self, used: &LobesOptions, synthesis: Option<&SynthesisOptions>, loaded: &LoadedMap) -> Provenance {
+        let notes = loaded.warnings.iter().map(|warning| format!("{}: {warning}", loaded.digest.name)).collect();
         Provenance {
             seed: self.reduction.seed,
-            inputs: vec![digest],
+            inputs: vec![loaded.digest.clone()],
             normal_convention: self.input.normal_convention(),
             notes,
             ..provenance::<Args>("lobes", self.option_list(used, synthesis))

@@ -7,7 +7,7 @@ use crate::cli::Terminal;
 use crate::cli::normal_maps::{check_name, unique_name};
 use crate::cli::values::name_of;
 use crate::exit::{Exit, Failure};
-use crate::input::{LoadedMap, digest, load_normal_map};
+use crate::input::{LoadedMap, load_normal_map};
 use crate::methods::bake::FinishedPack;
 use crate::methods::method::provenance;
 use crate::pack::seal;
@@ -24,7 +24,7 @@ use glint_bake_core::progress::{Progress, Silent};
 use glint_formats::Codec;
 use glint_formats::container::MAX_NAME_BYTES;
 use glint_formats::ndf_maps::{DensityStorage, LayeredMaterial};
-use glint_formats::provenance::{InputDigest, Provenance};
+use glint_formats::provenance::Provenance;
 use std::path::PathBuf;
 
 /// A bake that is only looked at: maps and materials, and the bytes that the pack would have.
@@ -60,8 +60,6 @@ struct Source {
     name: String,
     /// The map.
     loaded: LoadedMap,
-    /// What provenance says of the file.
-    digest: InputDigest,
 }
 
 /// A bake that can go ahead.
@@ -101,10 +99,9 @@ impl<'a> Job<'a> {
         let mut sources = Vec::new();
         for (path, name) in args.maps.iter().zip(names) {
             let loaded = load_normal_map(path, &input)?;
-            let digest = digest(path, &loaded)?;
             check_material(&loaded.map, &options, &placement, args.run.max_memory)
                 .map_err(|e| Failure::bake(path, &e))?;
-            sources.push(Source { path: path.clone(), name, loaded, digest });
+            sources.push(Source { path: path.clone(), name, loaded });
         }
         Ok(Job { args, sources, options, placement, layers })
     }
@@ -145,10 +142,10 @@ impl<'a> Job<'a> {
 
     /// Where the pack comes from.
     fn provenance(&self) -> Provenance {
-        let remark = |source: &Source, warning: &String| format!("{}: {warning}", source.digest.name);
+        let remark = |source: &Source, warning: &String| format!("{}: {warning}", source.loaded.digest.name);
         Provenance {
             seed: self.args.seed,
-            inputs: self.sources.iter().map(|source| source.digest.clone()).collect(),
+            inputs: self.sources.iter().map(|source| source.loaded.digest.clone()).collect(),
             normal_convention: self.args.input.normal_convention(),
             notes: self.sources.iter().flat_map(|s| s.loaded.warnings.iter().map(|w| remark(s, w))).collect(),
             ..provenance::<Args>("ndf-maps", self.args.option_list(&self.options, &self.placement))
@@ -215,7 +212,7 @@ fn input_line(source: &Source) -> String {
         source.loaded.map.width,
         source.loaded.map.height,
         source.loaded.convention,
-        source.loaded.bytes,
+        source.loaded.digest.bytes,
         source.name
     )
 }
