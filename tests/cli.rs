@@ -32,6 +32,8 @@ mod export;
 mod generate;
 #[path = "cli/info.rs"]
 mod info;
+#[path = "cli/inputs_raster.rs"]
+mod inputs_raster;
 #[path = "cli/lobes.rs"]
 mod lobes;
 #[path = "cli/ninja.rs"]
