@@ -25,11 +25,23 @@ pub(super) fn webp(bytes: &[u8]) -> impl Iterator<Item = ([u8; 4], &[u8])> {
     })
 }
 
+/// The frame of a JPEG file.
+#[derive(Clone, Copy)]
+pub(super) struct JpegFrame {
+    /// The low byte of its marker.
+    pub kind: u8,
+    /// Bits of a sample.
+    pub bits: u8,
+    /// Width and height.
+    pub size: (u16, u16),
+    pub channels: u8,
+}
+
 /// What the segments of a JPEG file say before its first scan.
 #[derive(Default)]
 pub(super) struct Jpeg {
-    /// Kind of the frame (the low byte of its marker), bits and channels of a sample.
-    pub frame: Option<(u8, u8, u8)>,
+    /// The frame.
+    pub frame: Option<JpegFrame>,
     /// Whether the file goes on to an end marker; where it does not, decoders fill the missing rest with grey.
     pub has_end: bool,
 }
@@ -56,7 +68,13 @@ impl Jpeg {
             }
             // Frames are C0 to CF but for tables (C4, CC) and a reserved one, and JPEG-LS's F7.
             if matches!(marker, 0xc0..=0xcf | 0xf7) && !matches!(marker, 0xc4 | 0xc8 | 0xcc) {
-                jpeg.frame = bytes.get(at..at + 10).map(|s| (marker, s[4], s[9]));
+                let word = |s: &[u8], at: usize| u16::from_be_bytes([s[at], s[at + 1]]);
+                jpeg.frame = bytes.get(at..at + 10).map(|s| JpegFrame {
+                    kind: marker,
+                    bits: s[4],
+                    size: (word(s, 7), word(s, 5)),
+                    channels: s[9],
+                });
             }
             at += 2 + u16::from_be_bytes([bytes[at + 2], bytes[at + 3]]) as usize;
         }

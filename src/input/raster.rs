@@ -78,7 +78,7 @@ fn check_header(path: &Path, bytes: &[u8], format: ImageFormat) -> Result<(), In
 
 fn check_jpeg(path: &Path, bytes: &[u8]) -> Result<(), InputError> {
     let jpeg = Jpeg::of(bytes);
-    let kind = match jpeg.frame {
+    let kind = match jpeg.frame.map(|frame| (frame.kind, frame.bits, frame.channels)) {
         Some((0xf7, _, _)) => "a JPEG-LS".to_owned(),
         Some((0xc3 | 0xc7 | 0xcb | 0xcf, _, _)) => "a lossless JPEG".to_owned(),
         Some((0xc9..=0xcf, _, _)) => "a JPEG with arithmetic coding".to_owned(),

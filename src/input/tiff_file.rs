@@ -8,6 +8,7 @@ use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::{CompressionMethod, PhotometricInterpretation as Photometric, Tag};
 use tiff::{ColorType, TiffError};
 
+use super::chunks::Jpeg;
 use super::colour_tag::ColourTag;
 use super::error::InputError;
 use super::limits::check_size;
@@ -55,6 +56,9 @@ pub(super) fn decode(
     limits.intermediate_buffer_size = limits.decoding_buffer_size;
     let mut reader = reader.with_limits(limits);
 
+    if layout.compression == CompressionMethod::ModernJPEG {
+        layout.check_jpegs(path, bytes, &mut reader)?;
+    }
     let values = layout.values(&mut reader, notes).map_err(|e| from_tiff(path, e))?;
     if reader.more_images() {
         notes.push("the file holds further pictures (pages, layers or smaller copies); the first one is read".into());
@@ -152,6 +156,35 @@ impl Layout {
         Ok(())
     }
 
+    /// Looks that the JPEGs of the strips or tiles are as large as these: the decoder takes what they hold for it.
+    fn check_jpegs(&self, path: &Path, bytes: &[u8], reader: &mut Reader) -> Result<(), InputError> {
+        let (at, length) = match self.tiled {
+            true => (Tag::TileOffsets, Tag::TileByteCounts),
+            false => (Tag::StripOffsets, Tag::StripByteCounts),
+        };
+        let offsets = reader.get_tag_u64_vec(at).map_err(|e| from_tiff(path, e))?;
+        let lengths = reader.get_tag_u64_vec(length).map_err(|e| from_tiff(path, e))?;
+        let (across, down) = reader.chunk_dimensions();
+        let channels = if self.planar { 1 } else { self.samples };
+        for (k, (&at, &length)) in offsets.iter().zip(&lengths).enumerate() {
+            let part = usize::try_from(at).ok().zip(usize::try_from(at.saturating_add(length)).ok());
+            let Some(part) = part.and_then(|(from, to)| bytes.get(from..to)) else { return Err(cut_off(path)) };
+            let Some(frame) = Jpeg::of(part).frame else { continue };
+            let (wide, high) = (u32::from(frame.size.0), u32::from(frame.size.1));
+            if wide != across || high > down || u16::from(frame.channels) != channels {
+                return Err(InputError::bad(
+                    path,
+                    format!(
+                        "the TIFF is damaged: part {k} holds a JPEG of {wide}×{high} texels and {} channels; expected {across} \
+                         columns, at most {down} rows and {channels} channels: export it again",
+                        frame.channels
+                    ),
+                ));
+            }
+        }
+        Ok(())
+    }
+
     /// The codec that lost precision.
     fn lossy(&self, bytes: &[u8]) -> Option<&'static str> {
         match self.compression {
@@ -170,7 +203,7 @@ impl Layout {
         let alpha = matches!(self.extra.first(), Some(1 | 2)) || (self.extra.is_empty() && self.samples == 4);
         match self.samples {
             1 | 2 => Ok(Values::Grey(self.channels::<1>(reader)?.into_iter().map(|[v]| v).collect())),
-            4.. if alpha && !grey => {
+            4.. if alpha && self.photometric == Photometric::RGB => {
                 let mut values = self.channels::<4>(reader)?;
                 if self.extra.first() == Some(&ASSOCIATED_ALPHA) && values.iter().any(|v| v[3] != 1.0) {
                     notes.push("the colours are multiplied by alpha (tag 338); they are divided by it".into());
