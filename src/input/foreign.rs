@@ -11,7 +11,7 @@ pub(super) struct Kind {
 
 const CONVERT: &str = "convert it without changing its values";
 const UNPACK: &str = "unpack it first";
-const DECODE: &str = "decode it first; block compression loses precision, so better take what it was made of";
+const DECODE: &str = "convert what it was made of (block compression loses precision), or itself";
 const EXPORT: &str = "export the map from it";
 const DOWNLOAD: &str = "download the image itself";
 

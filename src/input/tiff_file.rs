@@ -240,6 +240,7 @@ impl Layout {
         // Rows are read as wide as they are stored: the LZW decoder may end early when it is asked for less than whole chunks.
         let mut samples =
             Samples { values: DecodingResult::U8(Vec::new()), bits: self.bits, a_row: across as usize * a_texel };
+        let row_bytes = samples.row_bytes();
         let mut texels = vec![[0.0; N]; width * height];
         for chunk in 0..a_plane {
             let left = (chunk % columns) as usize * across as usize;
@@ -248,11 +249,7 @@ impl Layout {
             let wide = (across as usize).min(width - left);
             let high = (down as usize).min(height - top);
             for plane in 0..if self.planar { N } else { 1 } {
-                reader.read_chunk_to_buffer(
-                    &mut samples.values,
-                    chunk + plane as u32 * a_plane,
-                    samples.row_bytes(),
-                )?;
+                reader.read_chunk_to_buffer(&mut samples.values, chunk + plane as u32 * a_plane, row_bytes)?;
                 for (j, row) in texels.chunks_exact_mut(width).skip(top).take(high).enumerate() {
                     for (i, texel) in row[left..left + wide].iter_mut().enumerate() {
                         if self.planar {
