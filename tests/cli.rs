@@ -32,6 +32,8 @@ mod export;
 mod generate;
 #[path = "cli/info.rs"]
 mod info;
+#[path = "cli/inputs_files.rs"]
+mod inputs_files;
 #[path = "cli/lobes.rs"]
 mod lobes;
 #[path = "cli/ninja.rs"]
