@@ -46,11 +46,9 @@ fn fault(text: &str, is_target: bool) -> Option<String> {
     if text.starts_with('~') {
         return Some("a ~ at its start".into());
     }
-    if text.contains('(') && text.ends_with(')') {
-        return Some("parentheses up to its end".into());
-    }
-    if text.ends_with([' ', '\\']) {
-        return Some("a space or a backslash at its end".into());
+    // To Make, `a(b` and a later `c)` are members of an archive.
+    if text.ends_with([' ', '\\', ')']) {
+        return Some("a space, a backslash or a parenthesis at its end".into());
     }
     let joined = ["\\#", "\\$"].into_iter().find(|pair| text.contains(pair));
     joined.map(|pair| format!("the characters {pair}"))
@@ -93,9 +91,9 @@ mod tests {
             ("a\nb", "'\\n'"),
             ("a`b", "'`'"),
             ("~/a", "a ~ at its start"),
-            ("a\\", "backslash at its end"),
+            ("a\\", "backslash or a parenthesis at its end"),
             ("a\\#b", "\\#"),
-            ("a(b)", "parentheses"),
+            ("a(b)", "parenthesis at its end"),
         ] {
             let failure = rule(Path::new("out"), &[Path::new(name)]).unwrap_err();
             assert!(failure.message.contains(part), "{name}: {failure:?}");

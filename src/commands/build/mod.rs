@@ -86,7 +86,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     prepare(&project, args.depfile.as_deref())?;
     let in_flight = args.in_flight.unwrap_or(rayon::current_num_threads().min(MOST_IN_FLIGHT));
     let outcomes = work::all(&project, states, in_flight, terminal);
-    work::summary(&outcomes, terminal)?;
+    work::summary(&project, &outcomes, terminal)?;
     if let Some((path, text)) = dependencies {
         output::write(path, text.as_bytes())?;
     }
