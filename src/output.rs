@@ -105,6 +105,8 @@ pub fn check_writable(path: &Path) -> Result<(), Failure> {
         if meta.permissions().readonly() {
             return refuse("cannot be written: the file is read-only; make it writable, or give another name");
         }
+        // It is compared with what would be written, and left alone when that is the same.
+        std::fs::File::open(&target).map_err(|error| unusable(&error))?;
     }
     let folder = folder_of(&target);
     if !folder.is_dir() {

@@ -10,8 +10,8 @@ use std::path::Path;
 /// An input, the method and options that it is baked with, and the code that it ends with by itself.
 type Case<'a> = (&'a str, &'a str, i32);
 
-const NORMALS: &str = "method = 'ndf-maps'\npreset = 'draft'\ncrop = '4x4+0+0'\n";
-const HEIGHTS: &str = "method = 'ndf-maps'\npreset = 'draft'\ncrop = '4x4+0+0'\nheight = 3\n";
+const NORMALS: &str = "method = 'area-light'\n";
+const HEIGHTS: &str = "method = 'area-light'\nheight = 3\n";
 const SKY: &str = "method = 'environment'\nface-size = 4\nlevels = 2\n";
 
 /// The files of the table of cases, as it says what should become of them.
@@ -132,6 +132,7 @@ fn the_table_of_cases_is_built_as_it_says() {
     for name in CASES.iter().map(|(name, ..)| *name).chain(["sound.png"]) {
         fs::copy(cases.join(name), folder.path().join(name)).unwrap();
     }
-    let sound: [Case<'_>; 2] = [("sound.png", NORMALS, 0), ("sound.png", "method = 'area-light'\n", 0)];
+    let sound: [Case<'_>; 2] =
+        [("sound.png", NORMALS, 0), ("sound.png", "method = 'ndf-maps'\npreset = 'draft'\ncrop = '4x4+0+0'\n", 0)];
     builds_all_but_the_bad(folder.path(), &[&sound[..1], &CASES, &sound[1..]].concat());
 }
