@@ -32,6 +32,10 @@ mod export;
 mod generate;
 #[path = "cli/info.rs"]
 mod info;
+#[path = "cli/inputs_build.rs"]
+mod inputs_build;
+#[path = "cli/inputs_files.rs"]
+mod inputs_files;
 #[path = "cli/inputs_raster.rs"]
 mod inputs_raster;
 #[path = "cli/lobes.rs"]
