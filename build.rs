@@ -4,19 +4,24 @@ use std::process::Command;
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
-    // These change with every commit and every checkout; they are absent outside a repository.
-    for path in [".git/HEAD", ".git/refs/heads", ".git/packed-refs"] {
-        if std::path::Path::new(path).exists() {
+    // A `.git` of a folder above would belong to somebody else.
+    let own = std::path::Path::new(".git").exists();
+    let hash = own.then(|| git(&["rev-parse", "--short=12", "HEAD"])).flatten();
+    // These change with every commit and every checkout. A second work tree has a HEAD of its own and shares the rest.
+    for (folder, file) in
+        [("--git-dir", "HEAD"), ("--git-common-dir", "refs/heads"), ("--git-common-dir", "packed-refs")]
+    {
+        let path = own.then(|| git(&["rev-parse", folder])).flatten().map(|folder| format!("{folder}/{file}"));
+        if let Some(path) = path.filter(|path| std::path::Path::new(path).exists()) {
             println!("cargo:rerun-if-changed={path}");
         }
     }
-    let hash = std::path::Path::new(".git").exists().then(git_hash).flatten().unwrap_or_else(|| "unknown".into());
-    println!("cargo:rustc-env=GLINT_GIT_HASH={hash}");
+    println!("cargo:rustc-env=GLINT_GIT_HASH={}", hash.unwrap_or_else(|| "unknown".into()));
 }
 
-/// The commit of this very repository: a `.git` of a folder above would belong to somebody else.
-fn git_hash() -> Option<String> {
-    let output = Command::new("git").args(["rev-parse", "--short=12", "HEAD"]).output().ok()?;
-    let hash = String::from_utf8(output.stdout).ok()?.trim().to_owned();
-    (output.status.success() && !hash.is_empty()).then_some(hash)
+/// What git says of this repository, on one line.
+fn git(args: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(args).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?.trim().to_owned();
+    (output.status.success() && !text.is_empty()).then_some(text)
 }
