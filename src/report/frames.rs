@@ -36,7 +36,7 @@ mod with_viewer {
     use glint_bake_core::{area_light, dictionary, environment, lobes, ndf_maps, surface};
     use glint_formats::{Codec, Limits, Pack, PackBuilder, Section};
     use glint_view::bench::{BenchRow, BenchSettings, Setup, measure as measure_setup, table};
-    use glint_view::gpu::{Gpu, Wish};
+    use glint_view::gpu::{AdapterChoice, Gpu};
     use glint_view::scene::{Mesh, Orbit};
     use glint_view::settings::Settings as ViewSettings;
     use glint_view::subjects::Subjects;
@@ -79,7 +79,7 @@ mod with_viewer {
     }
 
     fn adapter(settings: &Settings) -> Result<Gpu, Failure> {
-        Ok(Gpu::headless(&Wish { name: settings.adapter.clone() })?)
+        Ok(Gpu::headless(&AdapterChoice { name: settings.adapter.clone() })?)
     }
 
     /// Measures the report.

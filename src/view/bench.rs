@@ -1,7 +1,7 @@
 //! Time of each method over that of its smooth baseline, in one run, with the error against its reference beside it.
 
 use crate::gpu::{Gpu, GpuError};
-use crate::render::{Camera, Compare, LightKind, Method, Overlay, Renderer, Shown, Side, View, picture};
+use crate::render::{Camera, Compare, LightKind, Method, Overlay, Renderer, Side, Subject, View, picture};
 use crate::scene::Mesh;
 use crate::settings::{Against, Settings, rect_facing};
 use crate::subjects::Subjects;
@@ -48,13 +48,13 @@ pub struct Setup {
     /// The same in fewer pixels with the same footprints.
     pub small: View,
     /// What the method is compared with.
-    pub baseline: Shown,
+    pub baseline: Subject,
 }
 
 impl Setup {
     /// The setups of entry `index` of `list`, with the lights and materials of `settings`: the wall from straight ahead, where
     /// footprints are round and equal, and from 60° to the side, where they are long. None for what is a baseline itself.
-    pub fn of(list: &[Shown], index: usize, settings: &Settings, bench: BenchSettings) -> Vec<Setup> {
+    pub fn of(list: &[Subject], index: usize, settings: &Settings, bench: BenchSettings) -> Vec<Setup> {
         let shown = &list[index];
         let Some(method) = shown.method.baseline() else { return Vec::new() };
         let Some(base) =
@@ -89,7 +89,13 @@ impl Setup {
                     view
                 };
                 let (view, small) = (view(bench.size), view(bench.error_size));
-                Setup { name, mesh: Mesh::wall(WALL, WALL), view, small, baseline: Shown { material, ..base.clone() } }
+                Setup {
+                    name,
+                    mesh: Mesh::wall(WALL, WALL),
+                    view,
+                    small,
+                    baseline: Subject { material, ..base.clone() },
+                }
             })
             .into()
     }
@@ -130,7 +136,7 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
         return Err(GpuError::Refused("a bench has one side".into()));
     };
     let renderer = &mut subjects.renderer(gpu, &setup.mesh)?;
-    let of = |view: &View, shown: &Shown, reference| View {
+    let of = |view: &View, shown: &Subject, reference| View {
         compare: Compare::Single(Side { shown: shown.clone(), reference }),
         antialias: false,
         vary_seed: false,

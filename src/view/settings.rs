@@ -1,8 +1,8 @@
 //! All that a user sets, in the window's panel or by flags, and the view that follows from it.
 
 use crate::render::{
-    Camera, Compare, Display, Environment, LightKind, Lights, Material, Overlay, PointLight, RectLight, Scene, Shown,
-    Side, Sun, ToneMapping, View,
+    Camera, Compare, Display, Environment, LightKind, Lights, Material, Overlay, PointLight, RectLight, Scene, Side,
+    Subject, Sun, ToneMapping, View,
 };
 use crate::scene::Orbit;
 use glam::Vec3;
@@ -143,7 +143,7 @@ pub struct Settings {
 
 impl Settings {
     /// What a new user sees of `list` through a camera that was made for the mesh: its first entry in directional light.
-    pub fn new(list: &[Shown], camera: Orbit) -> Settings {
+    pub fn new(list: &[Subject], camera: Orbit) -> Settings {
         Settings {
             shown: 0,
             against: Against::Nothing,
@@ -162,9 +162,9 @@ impl Settings {
     }
 
     /// The view of `list` in `size` pixels.
-    pub fn view(&self, list: &[Shown], size: [u32; 2]) -> View {
+    pub fn view(&self, list: &[Subject], size: [u32; 2]) -> View {
         let side = |index: usize, reference| Side {
-            shown: Shown { material: self.materials[index], ..list[index].clone() },
+            shown: Subject { material: self.materials[index], ..list[index].clone() },
             reference,
         };
         let own = side(self.shown, self.reference);

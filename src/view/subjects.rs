@@ -2,7 +2,7 @@
 
 use crate::gpu::{Gpu, GpuError, ResourceSet, Resources, bind_pack};
 use crate::methods;
-use crate::render::{Material, Method, Renderer, Shown};
+use crate::render::{Material, Method, Renderer, Subject};
 use crate::scene::Mesh;
 use glam::Vec3;
 use glint_bake_core::error::BakeError;
@@ -16,7 +16,7 @@ use std::rc::Rc;
 #[derive(Debug, Default)]
 pub struct Subjects {
     /// What can be shown, the smooth BRDF last.
-    pub shown: Vec<Shown>,
+    pub shown: Vec<Subject>,
     /// What lights a scene whose environment is on; black where no pack has one.
     pub environment: Option<Rc<Resources>>,
     left_out: Vec<String>,
@@ -56,10 +56,10 @@ impl Subjects {
         Ok(renderer)
     }
 
-    fn add(&mut self, method: Method, name: &str, data: &Rc<Resources>, material: Material) -> &mut Shown {
+    fn add(&mut self, method: Method, name: &str, data: &Rc<Resources>, material: Material) -> &mut Subject {
         let (name, data) = (name.to_owned(), Rc::clone(data));
         let (files, constants) = (Vec::new(), Vec::new());
-        self.shown.push_mut(Shown { name, method, data, material, files, constants, rim_roughness: 0.0 })
+        self.shown.push_mut(Subject { name, method, data, material, files, constants, rim_roughness: 0.0 })
     }
 
     fn add_dictionaries(&mut self, gpu: &Gpu, pack: &Pack, colours: &[Vec3]) -> Result<(), GpuError> {

@@ -4,7 +4,7 @@
 //! Boxes are lobes like others here; `boxes.wgsl` finds once what boxes of one size have in common.
 
 use super::baked::BakedLobes;
-use super::eval::{Patch, Query, SeenLobe, box_lobe, ellipse, row, seen};
+use super::eval::{ConditionalLobe, Patch, Query, box_lobe, conditional, ellipse, row};
 use crate::wrap::wrapped;
 use glam::{IVec2, Mat2, Vec2};
 use glint_formats::Wrap;
@@ -82,7 +82,7 @@ impl BakedLobes {
     }
 
     /// Hands boxes of `edge` texels under the footprint on the repeated map to `visit`. Returns how many.
-    pub(crate) fn boxes(&self, query: &Query, edge: f32, reach: f32, visit: &mut impl FnMut(&SeenLobe)) -> u32 {
+    pub(crate) fn boxes(&self, query: &Query, edge: f32, reach: f32, visit: &mut impl FnMut(&ConditionalLobe)) -> u32 {
         let frame = &query.frame;
         let size = Vec2::new(self.params.width as f32, self.params.height as f32);
         let repeat = self.repeat();
@@ -99,7 +99,7 @@ impl BakedLobes {
                 let copy = (place / size).floor() * repeat;
                 let centre = place - copy;
                 let lobe = box_lobe(&self.surface_at(centre), Vec2::splat(edge));
-                visit(&seen(query, &lobe, frame.mean - centre - copy));
+                visit(&conditional(query, &lobe, frame.mean - centre - copy));
                 visited += 1;
             }
         }

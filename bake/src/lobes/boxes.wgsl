@@ -163,24 +163,24 @@ fn glint_lobes_cut_boxes(map: GlintLobesMap, query: GlintLobesQuery, edge: f32, 
     var row = glint_lobes_row(ellipse, origin, edge, origin + f32(j) * edge);
     var sum = 0.0;
     while j <= last {
-        var seen = GlintSeenLobe();
-        while j <= last && !seen.cut {
+        var given = GlintConditionalLobe();
+        while j <= last && !given.cut {
             let y = origin + (f32(j) + 0.5) * edge;
-            while row.x <= row.y && !seen.cut {
+            while row.x <= row.y && !given.cut {
                 let place = vec2f(origin + (f32(row.x) + 0.5) * edge, y);
                 let copy = floor(place / size) * glint_lobes_repeat(map);
                 let centre = place - copy;
                 let lobe = glint_lobes_box_lobe(glint_lobes_surface_at(map, centre), vec2f(edge));
-                seen = glint_lobes_seen(query, lobe, frame.mean - centre - copy);
+                given = glint_lobes_conditional(query, lobe, frame.mean - centre - copy);
                 row.x += 1;
             }
-            if !seen.cut {
+            if !given.cut {
                 j += 1;
                 row = glint_lobes_row(ellipse, origin, edge, origin + f32(j) * edge);
             }
         }
-        if seen.cut {
-            sum += seen.density / glint_lobes_inside_disk(seen.mean, seen.covariance);
+        if given.cut {
+            sum += given.density / glint_lobes_inside_disk(given.mean, given.covariance);
         }
     }
     return sum;

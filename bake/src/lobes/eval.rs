@@ -72,7 +72,7 @@ pub(crate) struct Ellipse {
 
 /// What a lobe gives to a footprint: a Gaussian over the disk of normals.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SeenLobe {
+pub struct ConditionalLobe {
     /// Share of the footprint, to be divided by the sum of all shares.
     pub share: f32,
     /// Mean projected normal.
@@ -213,17 +213,17 @@ pub(super) fn inside_disk(mean: Vec2, covariance: Vec3) -> f32 {
 }
 
 /// A Gaussian over the disk whose covariance (xx, xy, yy) has at least the eigenvalue `intrinsic`.
-fn seen_gaussian(share: f32, mean: Vec2, covariance: Vec3, intrinsic: f32) -> SeenLobe {
+fn conditional_gaussian(share: f32, mean: Vec2, covariance: Vec3, intrinsic: f32) -> ConditionalLobe {
     let (xx, xy, yy) = (covariance.x, covariance.y, covariance.z);
     // Rounding may take the determinant of a long thin Gaussian below what it can be.
     let det = (xx * yy - xy * xy).max(intrinsic * xx.max(yy));
     let inside = if near_rim(mean, covariance) { inside_disk(mean, covariance) } else { 1.0 };
     let peak = 1.0 / (2.0 * std::f32::consts::PI * det.sqrt() * inside);
-    SeenLobe { share, mean, inverse: [yy / det, -xy / det, xx / det], peak, inside }
+    ConditionalLobe { share, mean, inverse: [yy / det, -xy / det, xx / det], peak, inside }
 }
 
 /// What `lobe` gives to a footprint whose centre lies `d` from the lobe's position (Eq. 6).
-pub(crate) fn seen(query: &Query, lobe: &Lobe, d: Vec2) -> SeenLobe {
+pub(crate) fn conditional(query: &Query, lobe: &Lobe, d: Vec2) -> ConditionalLobe {
     // Columns of the factor of positions, in standard deviations of the footprint, and what they are in normals.
     let p = Vec2::new(query.along.dot(lobe.factor.x_axis), query.along.dot(lobe.factor.y_axis));
     let q = Vec2::new(query.across.dot(lobe.factor.x_axis), query.across.dot(lobe.factor.y_axis));
@@ -245,7 +245,7 @@ pub(crate) fn seen(query: &Query, lobe: &Lobe, d: Vec2) -> SeenLobe {
     let yy = intrinsic + lobe.residual.z + (a.y * a.y + b.y * b.y + u.y * u.y + v.y * v.y) * part;
     let mean = lobe.normal + a * toward.x + b * toward.y;
     let share = lobe.weight * libm::expf(-0.5 * distance) * part.sqrt();
-    seen_gaussian(share, mean, Vec3::new(xx, xy, yy), intrinsic)
+    conditional_gaussian(share, mean, Vec3::new(xx, xy, yy), intrinsic)
 }
 
 /// Lobe of a box of the filtered map, `size` texels wide and high: exact moments of positions and normals over the box.
@@ -262,7 +262,7 @@ pub(crate) fn box_lobe(place: &Patch, size: Vec2) -> Lobe {
     }
 }
 
-impl SeenLobe {
+impl ConditionalLobe {
     /// Density at `s`, times the share; 0 farther than √30 standard deviations from the mean.
     pub fn density(&self, s: Vec2) -> f32 {
         let d = s - self.mean;

@@ -125,7 +125,7 @@ struct GlintLobesEllipse {
 }
 
 // What a lobe gives to a footprint: a Gaussian over the disk of normals.
-struct GlintSeenLobe {
+struct GlintConditionalLobe {
     // Share of the footprint, to be divided by the sum of all shares.
     share: f32,
     // Share times density at the query's normal, but for the mass that lies inside the disk.
@@ -262,13 +262,13 @@ fn glint_lobes_inside_disk(mean: vec2f, covariance: vec3f) -> f32 {
 }
 
 // A Gaussian over the disk whose covariance (xx, xy, yy) has at least the eigenvalue `intrinsic`.
-fn glint_lobes_seen_gaussian(
+fn glint_lobes_conditional_gaussian(
     query: GlintLobesQuery,
     share: f32,
     mean: vec2f,
     covariance: vec3f,
     intrinsic: f32,
-) -> GlintSeenLobe {
+) -> GlintConditionalLobe {
     let xx = covariance.x;
     let xy = covariance.y;
     let yy = covariance.z;
@@ -278,11 +278,11 @@ fn glint_lobes_seen_gaussian(
     let far = (yy * d.x * d.x - 2.0 * xy * d.x * d.y + xx * d.y * d.y) * peak * peak;
     let near = far <= GLINT_LOBES_CUT;
     let density = select(0.0, share * peak * exp(-0.5 * far) * GLINT_LOBES_PEAK, near);
-    return GlintSeenLobe(share, density, near && glint_lobes_near_rim(mean, covariance), mean, covariance);
+    return GlintConditionalLobe(share, density, near && glint_lobes_near_rim(mean, covariance), mean, covariance);
 }
 
 // What `lobe` gives to a footprint whose centre lies `d` from the lobe's position (Eq. 6).
-fn glint_lobes_seen(query: GlintLobesQuery, lobe: GlintLobe, d: vec2f) -> GlintSeenLobe {
+fn glint_lobes_conditional(query: GlintLobesQuery, lobe: GlintLobe, d: vec2f) -> GlintConditionalLobe {
     // Columns of the factor of positions, in standard deviations of the footprint, and what they are in normals.
     let p = vec2f(
         query.along.x * lobe.factor.x + query.along.y * lobe.factor.y, query.along.y * lobe.factor.z,
@@ -309,7 +309,7 @@ fn glint_lobes_seen(query: GlintLobesQuery, lobe: GlintLobe, d: vec2f) -> GlintS
     let yy = intrinsic + lobe.residual.z + (a.y * a.y + b.y * b.y + u.y * u.y + v.y * v.y) * part;
     let mean = lobe.normal + a * toward.x + b * toward.y;
     let share = lobe.weight * exp(-0.5 * distance) * root;
-    return glint_lobes_seen_gaussian(query, share, mean, vec3f(xx, xy, yy), intrinsic);
+    return glint_lobes_conditional_gaussian(query, share, mean, vec3f(xx, xy, yy), intrinsic);
 }
 
 // Lobe of a box of the filtered map, `size` texels wide and high: exact moments.

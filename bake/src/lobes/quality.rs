@@ -2,7 +2,7 @@
 //! a map lies where renderers may leave it out.
 
 use super::baked::BakedLobes;
-use super::eval::{CUT, Frame, Query, SeenLobe, inside_disk, near_rim, query, seen};
+use super::eval::{CUT, ConditionalLobe, Frame, Query, conditional, inside_disk, near_rim, query};
 use super::query::{Detail, LEAST_SHARE, Lod, QuerySettings};
 use super::reference::{GridNdf, Reference};
 use crate::footprint::Footprint;
@@ -30,14 +30,14 @@ pub struct FootprintErrors {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gathered {
     /// Lobes; shares sum to 1.
-    pub lobes: Vec<SeenLobe>,
+    pub lobes: Vec<ConditionalLobe>,
     /// Cells and boxes visited.
     pub cells: u32,
 }
 
 impl Gathered {
     /// The lobes of both levels of `lod`; `add` adds those of a level to a list and returns the number of cells and boxes.
-    pub(crate) fn of(lod: &Lod, mut add: impl FnMut(&mut Vec<SeenLobe>, Detail) -> u32) -> Gathered {
+    pub(crate) fn of(lod: &Lod, mut add: impl FnMut(&mut Vec<ConditionalLobe>, Detail) -> u32) -> Gathered {
         let mut gathered = Gathered::default();
         for (detail, weight) in lod.weighted() {
             gathered.add_level(detail, weight, &mut add);
@@ -50,22 +50,22 @@ impl Gathered {
         &mut self,
         detail: Detail,
         weight: f32,
-        mut add: impl FnMut(&mut Vec<SeenLobe>, Detail) -> u32,
+        mut add: impl FnMut(&mut Vec<ConditionalLobe>, Detail) -> u32,
     ) {
         let first = self.lobes.len();
         self.cells += add(&mut self.lobes, detail);
-        let share = |list: &[SeenLobe]| list.iter().map(|seen| seen.share).sum::<f32>();
+        let share = |list: &[ConditionalLobe]| list.iter().map(|lobe| lobe.share).sum::<f32>();
         if share(&self.lobes[first..]) < LEAST_SHARE {
             self.lobes.truncate(first);
             add(&mut self.lobes, Detail::Whole);
         }
         let scale = weight / share(&self.lobes[first..]);
-        self.lobes[first..].iter_mut().for_each(|seen| seen.share *= scale);
+        self.lobes[first..].iter_mut().for_each(|lobe| lobe.share *= scale);
     }
 
     /// Density at `s`, 0 outside the disk.
     pub fn density(&self, s: Vec2) -> f32 {
-        if s.length_squared() > 1.0 { 0.0 } else { self.lobes.iter().map(|seen| seen.density(s)).sum() }
+        if s.length_squared() > 1.0 { 0.0 } else { self.lobes.iter().map(|lobe| lobe.density(s)).sum() }
     }
 }
 
@@ -97,8 +97,8 @@ impl BakedLobes {
     }
 
     /// Adds the lobes that a footprint sees at one level to a list; returns the number of cells and boxes.
-    fn add(&self, list: &mut Vec<SeenLobe>, query: &Query, detail: Detail, reach: f32) -> u32 {
-        self.level_sum(query, detail, reach, &mut |seen| list.push(*seen))
+    fn add(&self, list: &mut Vec<ConditionalLobe>, query: &Query, detail: Detail, reach: f32) -> u32 {
+        self.level_sum(query, detail, reach, &mut |lobe| list.push(*lobe))
     }
 
     /// The levels whose cells are 2^`lambda` texels wide, or next to that, as the paper chooses them. Below the first stored level the
@@ -143,9 +143,9 @@ pub fn footprint_errors(
         .map(|footprint| {
             let exact = reference.ndf(footprint, stride);
             let one = |(lobes, measured): &(&BakedLobes, Measured)| {
-                let seen = lobes.measured(footprint, reference.roughness(), measured);
-                let (e1, energy) = difference(&exact, &seen);
-                (e1, energy, seen.lobes.len())
+                let gathered = lobes.measured(footprint, reference.roughness(), measured);
+                let (e1, energy) = difference(&exact, &gathered);
+                (e1, energy, gathered.lobes.len())
             };
             bakes.iter().map(one).collect()
         })
@@ -162,13 +162,13 @@ pub fn footprint_errors(
 
 /// E₁ and |∫D̂ − 1| of what is seen against the exact P-NDF. Off the grid, on the lattice that it is a part of, the exact
 /// one is 0.
-pub fn difference(exact: &GridNdf, seen: &Gathered) -> (f64, f64) {
+pub fn difference(exact: &GridNdf, gathered: &Gathered) -> (f64, f64) {
     let grid = &exact.grid;
     let mut values = vec![0.0f64; exact.values.len()];
     let mut off_grid = 0.0;
     // A lobe of so small a share is nothing, and a query may hold as many of them as others.
-    let least = 1e-7 * seen.lobes.iter().fold(0.0, |most: f32, lobe| most.max(lobe.share));
-    for lobe in seen.lobes.iter().filter(|lobe| lobe.share > least) {
+    let least = 1e-7 * gathered.lobes.iter().fold(0.0, |most: f32, lobe| most.max(lobe.share));
+    for lobe in gathered.lobes.iter().filter(|lobe| lobe.share > least) {
         // Half width and height of the lobe's ellipse at the distance where its density ends.
         let [a, b, c] = lobe.inverse.map(f64::from);
         let det = a * c - b * b;
@@ -232,7 +232,7 @@ impl BakedLobes {
             let level = self.level(index);
             let count = level.cells_x * level.cells_y * self.params.lobes_per_cell;
             let lobes = (level.first_lobe..level.first_lobe + count).map(|index| self.lobe(&level, index));
-            let parts = lobes.map(|lobe| (lobe.weight, seen(&alike, &lobe, Vec2::ZERO).inside));
+            let parts = lobes.map(|lobe| (lobe.weight, conditional(&alike, &lobe, Vec2::ZERO).inside));
             share = share.max(share_beyond(parts, f64::from(count) * f64::from(level.weight_scale), most));
         }
         share

@@ -8,7 +8,7 @@
 //! levels only over the second half of the way between them.
 
 use super::baked::BakedLobes;
-use super::eval::{Ellipse, Frame, LEAST_SIGMA, Query, SeenLobe, ellipse, ellipse_span, query, seen};
+use super::eval::{ConditionalLobe, Ellipse, Frame, LEAST_SIGMA, Query, conditional, ellipse, ellipse_span, query};
 use crate::footprint::Footprint;
 use glam::Vec2;
 use glint_formats::Wrap;
@@ -217,13 +217,13 @@ impl BakedLobes {
         level: &LevelUniform,
         first: u32,
         corner: Vec2,
-        visit: &mut impl FnMut(&SeenLobe),
+        visit: &mut impl FnMut(&ConditionalLobe),
     ) {
         let d = query.frame.mean - corner;
         for k in 0..self.params.lobes_per_cell {
             let lobe = self.lobe(level, first + k);
             if lobe.weight > 0.0 {
-                visit(&seen(query, &lobe, d - lobe.position));
+                visit(&conditional(query, &lobe, d - lobe.position));
             }
         }
     }
@@ -236,7 +236,7 @@ impl BakedLobes {
         level: &LevelUniform,
         reach: f32,
         whole: bool,
-        visit: &mut impl FnMut(&SeenLobe),
+        visit: &mut impl FnMut(&ConditionalLobe),
     ) -> u32 {
         let per_cell = self.params.lobes_per_cell;
         if whole {
@@ -276,7 +276,7 @@ impl BakedLobes {
         query: &Query,
         detail: Detail,
         reach: f32,
-        visit: &mut impl FnMut(&SeenLobe),
+        visit: &mut impl FnMut(&ConditionalLobe),
     ) -> u32 {
         match detail {
             Detail::Boxes(edge) => self.boxes(query, edge, reach, visit),
@@ -296,9 +296,9 @@ impl BakedLobes {
         let query = query(self.frame_in_map(footprint), roughness);
         self.lod(&query.frame, settings).density(|detail| {
             let (mut sum, mut share) = (0.0, 0.0);
-            let mut visit = |seen: &SeenLobe| {
-                sum += seen.density(s);
-                share += seen.share;
+            let mut visit = |lobe: &ConditionalLobe| {
+                sum += lobe.density(s);
+                share += lobe.share;
             };
             self.level_sum(&query, detail, settings.reach_of(detail), &mut visit);
             (sum, share)

@@ -144,14 +144,14 @@ fn glint_lobes_cut_lobes(
     var sum = 0.0;
     var k = 0u;
     while k < map.lobes_per_cell {
-        var seen = GlintSeenLobe();
-        while k < map.lobes_per_cell && !seen.cut {
+        var given = GlintConditionalLobe();
+        while k < map.lobes_per_cell && !given.cut {
             let lobe = glint_lobes_lobe(map, level, first + k);
-            seen = glint_lobes_seen(query, lobe, d - lobe.position);
+            given = glint_lobes_conditional(query, lobe, d - lobe.position);
             k += 1u;
         }
-        if seen.cut {
-            sum += seen.density / glint_lobes_inside_disk(seen.mean, seen.covariance);
+        if given.cut {
+            sum += given.density / glint_lobes_inside_disk(given.mean, given.covariance);
         }
     }
     return sum;
@@ -170,8 +170,8 @@ fn glint_lobes_cell(
     var sum = vec3f(0.0);
     for (var k = 0u; k < map.lobes_per_cell; k++) {
         let lobe = glint_lobes_lobe(map, level, first + k);
-        let seen = glint_lobes_seen(query, lobe, d - lobe.position);
-        sum += vec3f(select(seen.density, 0.0, seen.cut), seen.share, select(0.0, 1.0, seen.cut));
+        let given = glint_lobes_conditional(query, lobe, d - lobe.position);
+        sum += vec3f(select(given.density, 0.0, given.cut), given.share, select(0.0, 1.0, given.cut));
     }
     if glint_lobes_rim && sum.z > 0.0 {
         sum.x += glint_lobes_cut_lobes(map, query, level, first, d);

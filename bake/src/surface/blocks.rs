@@ -4,12 +4,12 @@
 //! pictures in real time.
 
 use super::query::{SurfaceQuery, boxes_of, filtered};
-use crate::lobes::eval::SeenLobe;
+use crate::lobes::eval::ConditionalLobe;
 use glam::IVec2;
 
 /// Hands the lobes of a block to `visit`, `place` of a level's blocks from the origin: of the cell of the sample at which the
 /// patch at the block's middle begins there, or the last before it.
-pub(super) fn block(q: &SurfaceQuery<'_>, level_index: usize, place: IVec2, visit: &mut impl FnMut(&SeenLobe)) {
+pub(super) fn block(q: &SurfaceQuery<'_>, level_index: usize, place: IVec2, visit: &mut impl FnMut(&ConditionalLobe)) {
     let lobes = &q.surface.lobes;
     let level = lobes.level(level_index);
     let at = place * level.cell_texels as i32;
@@ -24,7 +24,7 @@ pub(super) fn block(q: &SurfaceQuery<'_>, level_index: usize, place: IVec2, visi
 
 /// Hands boxes of `edge` texels under the footprint to `visit`: those of the sample, as if the patch that shows the footprint's
 /// middle showed all that it sees. One look-up of a patch serves them all. Returns how many.
-pub(super) fn boxes(q: &SurfaceQuery<'_>, edge: f32, visit: &mut impl FnMut(&SeenLobe)) -> u32 {
+pub(super) fn boxes(q: &SurfaceQuery<'_>, edge: f32, visit: &mut impl FnMut(&ConditionalLobe)) -> u32 {
     let lobes = &q.surface.lobes;
     let texel = q.point.frame.mean.floor().as_ivec2();
     let on_surface = q.origin.wrapping_add(texel);

@@ -6,13 +6,13 @@ use super::baked::Surface;
 use super::query::{SurfaceQuery, SurfaceSettings, query};
 use super::{blocks, seams};
 use crate::footprint::Footprint;
-use crate::lobes::eval::{SeenLobe, ellipse, row};
+use crate::lobes::eval::{ConditionalLobe, ellipse, row};
 use crate::lobes::query::Detail;
 use glam::{IVec2, Vec2};
 
 /// Hands what the surface shows of a level under the footprint to `visit`: 0 boxes, then the stored ones; the last is the whole
 /// surface. Returns the number of blocks or boxes; the whole surface counts as one.
-pub(super) fn level_sum(q: &SurfaceQuery<'_>, detail: Detail, visit: &mut impl FnMut(&SeenLobe)) -> u32 {
+pub(super) fn level_sum(q: &SurfaceQuery<'_>, detail: Detail, visit: &mut impl FnMut(&ConditionalLobe)) -> u32 {
     let lobes = &q.surface.lobes;
     let last = lobes.params.levels.len() - 1;
     let level = match detail {
@@ -53,9 +53,9 @@ impl Surface {
         let q = query(self, footprint, roughness, settings);
         self.lobes.lod(&q.point.frame, &settings.lobes).density(|detail| {
             let (mut sum, mut share) = (0.0, 0.0);
-            let mut visit = |seen: &SeenLobe| {
-                sum += seen.density(s);
-                share += seen.share;
+            let mut visit = |lobe: &ConditionalLobe| {
+                sum += lobe.density(s);
+                share += lobe.share;
             };
             level_sum(&q, detail, &mut visit);
             (sum, share)

@@ -6,7 +6,7 @@ use super::query::{SurfaceSettings, query};
 use crate::footprint::Footprint;
 use crate::lobes::LobesOptions;
 use crate::lobes::bake::{MEASURED_REFINEMENT, MEASURED_SIGMAS, measured_footprints};
-use crate::lobes::eval::SeenLobe;
+use crate::lobes::eval::ConditionalLobe;
 use crate::lobes::quality::{FootprintErrors, Gathered, STRIDE, difference};
 use crate::lobes::query::Detail;
 use crate::lobes::reference::Reference;
@@ -36,7 +36,7 @@ pub enum Measured {
 }
 
 impl Measured {
-    fn seen(&self, surface: &Surface, footprint: &Footprint, roughness: f64) -> Gathered {
+    fn gather(&self, surface: &Surface, footprint: &Footprint, roughness: f64) -> Gathered {
         match self {
             Measured::Chosen(settings) => surface.gather(footprint, roughness as f32, settings),
             Measured::At(detail, settings) => surface.gather_detail(footprint, *detail, roughness as f32, settings),
@@ -48,7 +48,9 @@ impl Surface {
     /// The lobes that a footprint sees, shares summing to 1.
     pub fn gather(&self, footprint: &Footprint, roughness: f32, settings: &SurfaceSettings) -> Gathered {
         let q = query(self, footprint, roughness, settings);
-        let add = |list: &mut Vec<SeenLobe>, detail| level_sum(&q, detail, &mut |seen: &SeenLobe| list.push(*seen));
+        let add = |list: &mut Vec<ConditionalLobe>, detail| {
+            level_sum(&q, detail, &mut |lobe: &ConditionalLobe| list.push(*lobe))
+        };
         Gathered::of(&self.lobes.lod(&q.point.frame, &settings.lobes), add)
     }
 
@@ -61,7 +63,9 @@ impl Surface {
         settings: &SurfaceSettings,
     ) -> Gathered {
         let q = query(self, footprint, roughness, settings);
-        let add = |list: &mut Vec<SeenLobe>, detail| level_sum(&q, detail, &mut |seen: &SeenLobe| list.push(*seen));
+        let add = |list: &mut Vec<ConditionalLobe>, detail| {
+            level_sum(&q, detail, &mut |lobe: &ConditionalLobe| list.push(*lobe))
+        };
         let mut gathered = Gathered::default();
         gathered.add_level(detail, 1.0, add);
         gathered
@@ -101,10 +105,10 @@ impl Exact<'_> {
                 let (map, local) = self.piece(footprint)?;
                 let reference = Reference::new(&map, self.filter(), self.roughness).refined(self.refinement);
                 let exact = reference.ndf(&local, stride);
-                let one = |way: &Measured| {
-                    let seen = way.seen(self.surface, footprint, self.roughness);
-                    let (e1, energy) = difference(&exact, &seen);
-                    (e1, energy, seen.lobes.len())
+                let one = |measured: &Measured| {
+                    let gathered = measured.gather(self.surface, footprint, self.roughness);
+                    let (e1, energy) = difference(&exact, &gathered);
+                    (e1, energy, gathered.lobes.len())
                 };
                 Some(measured.iter().map(one).collect())
             })

@@ -3,7 +3,7 @@
 use super::baked::Surface;
 use crate::footprint::Footprint;
 use crate::lobes::boxes::bilinear;
-use crate::lobes::eval::{self, Patch, Query, SeenLobe, box_lobe, ellipse, row, seen};
+use crate::lobes::eval::{self, ConditionalLobe, Patch, Query, box_lobe, conditional, ellipse, row};
 use crate::lobes::query::QuerySettings;
 use glam::{DVec2, IVec2, Mat2, Vec2};
 use glint_formats::lobes::Filter;
@@ -117,7 +117,7 @@ pub(super) fn boxes_of(
     q: &SurfaceQuery<'_>,
     edge: f32,
     patch: impl Fn(Vec2) -> Patch,
-    visit: &mut impl FnMut(&SeenLobe),
+    visit: &mut impl FnMut(&ConditionalLobe),
 ) -> u32 {
     let frame = &q.point.frame;
     // Boxes of a bilinear map begin at texel centres, where its patches do.
@@ -130,7 +130,7 @@ pub(super) fn boxes_of(
         for i in row.0..=row.1 {
             let centre = origin + (Vec2::new(i as f32, j as f32) + 0.5) * edge;
             let lobe = box_lobe(&patch(centre), Vec2::splat(edge));
-            visit(&seen(&q.point, &lobe, frame.mean - centre));
+            visit(&conditional(&q.point, &lobe, frame.mean - centre));
             visited += 1;
         }
     }

@@ -7,7 +7,7 @@
 //! texel or two see.
 
 use super::query::{SurfaceQuery, boxes_of, patch_at};
-use crate::lobes::eval::{Lobe, Patch, Query, SeenLobe, box_lobe, seen};
+use crate::lobes::eval::{ConditionalLobe, Lobe, Patch, Query, box_lobe, conditional};
 use glam::{IVec2, Mat2, UVec2, Vec2};
 use glint_formats::Wrap;
 use glint_formats::lobes::{Filter, LevelUniform};
@@ -56,12 +56,12 @@ fn cells_at_corners(q: &SurfaceQuery<'_>, at: IVec2, edge: i32, step: i32) -> Op
 }
 
 /// Hands one lobe, `d` from the footprint's centre, to `visit`.
-fn lobe(query: &Query, lobe: &Lobe, d: Vec2, visit: &mut impl FnMut(&SeenLobe)) {
-    visit(&seen(query, lobe, d));
+fn lobe(query: &Query, lobe: &Lobe, d: Vec2, visit: &mut impl FnMut(&ConditionalLobe)) {
+    visit(&conditional(query, lobe, d));
 }
 
 /// Hands boxes of `edge` texels under the footprint to `visit`. Returns how many.
-pub(super) fn boxes(q: &SurfaceQuery<'_>, edge: f32, visit: &mut impl FnMut(&SeenLobe)) -> u32 {
+pub(super) fn boxes(q: &SurfaceQuery<'_>, edge: f32, visit: &mut impl FnMut(&ConditionalLobe)) -> u32 {
     boxes_of(q, edge, |centre| patch_at(q, centre), visit)
 }
 
@@ -96,7 +96,7 @@ fn cell(
     source: UVec2,
     at: IVec2,
     owned: bool,
-    visit: &mut impl FnMut(&SeenLobe),
+    visit: &mut impl FnMut(&ConditionalLobe),
 ) {
     let lobes = &q.surface.lobes;
     let params = &lobes.params;
@@ -139,7 +139,7 @@ fn whole_block(
     level_index: usize,
     at: IVec2,
     owned: bool,
-    visit: &mut impl FnMut(&SeenLobe),
+    visit: &mut impl FnMut(&ConditionalLobe),
 ) -> bool {
     let level = q.surface.lobes.level(level_index);
     let edge = level.cell_texels as i32;
@@ -161,7 +161,7 @@ fn whole_block(
 
 /// Hands the box of this size around `centre` to `visit`, halved along each axis over which its normals spread so far that they
 /// are no Gaussian: cells beside it hold lobes of fewer normals.
-fn halved(q: &SurfaceQuery<'_>, centre: Vec2, size: Vec2, visit: &mut impl FnMut(&SeenLobe)) {
+fn halved(q: &SurfaceQuery<'_>, centre: Vec2, size: Vec2, visit: &mut impl FnMut(&ConditionalLobe)) {
     let place = patch_at(q, centre);
     let most = q.settings.box_range * q.point.roughness;
     let ranges = [place.jacobian.x_axis.length() * size.x, place.jacobian.y_axis.length() * size.y];
@@ -182,7 +182,7 @@ fn halved(q: &SurfaceQuery<'_>, centre: Vec2, size: Vec2, visit: &mut impl FnMut
 
 /// Hands the boxes of a block of `edge` texels to `visit`. Those of a bilinear map lie between texel centres; at the block's
 /// border they are half as wide.
-fn texels(q: &SurfaceQuery<'_>, at: IVec2, edge: i32, visit: &mut impl FnMut(&SeenLobe)) {
+fn texels(q: &SurfaceQuery<'_>, at: IVec2, edge: i32, visit: &mut impl FnMut(&ConditionalLobe)) {
     let nearest = q.surface.lobes.params.filter == Filter::Nearest;
     let shift = if nearest { 0.0 } else { 0.5 };
     let last = if nearest { edge - 1 } else { edge };
@@ -199,7 +199,7 @@ fn texels(q: &SurfaceQuery<'_>, at: IVec2, edge: i32, visit: &mut impl FnMut(&Se
 
 /// Hands the block of a level's edge that lies `block_place` of them from the origin to `visit`: as one block where that can be
 /// read, else by its quarters and theirs, down to the finest level.
-pub(super) fn block(q: &SurfaceQuery<'_>, level: usize, block_place: IVec2, visit: &mut impl FnMut(&SeenLobe)) {
+pub(super) fn block(q: &SurfaceQuery<'_>, level: usize, block_place: IVec2, visit: &mut impl FnMut(&ConditionalLobe)) {
     let levels = &q.surface.lobes.params.levels;
     let of_level = &levels[level];
     let at = block_place * of_level.cell_texels as i32;

@@ -59,12 +59,12 @@ fn glint_surface_cells_at_corners(q: GlintSurfaceQuery, at: vec2i, edge: i32, st
 
 // Density and share of one lobe at the query's normal.
 fn glint_surface_lobe(query: GlintLobesQuery, lobe: GlintLobe, d: vec2f) -> vec2f {
-    let seen = glint_lobes_seen(query, lobe, d);
+    let given = glint_lobes_conditional(query, lobe, d);
     var inside = 1.0;
-    if seen.cut {
-        inside = glint_lobes_inside_disk(seen.mean, seen.covariance);
+    if given.cut {
+        inside = glint_lobes_inside_disk(given.mean, given.covariance);
     }
-    return vec2f(seen.density / inside, seen.share);
+    return vec2f(given.density / inside, given.share);
 }
 
 // Density and share of boxes of `edge` texels under the footprint. The mass inside the disk takes long and few boxes need it: the
@@ -81,22 +81,22 @@ fn glint_surface_boxes(q: GlintSurfaceQuery, edge: f32) -> vec2f {
     var row = glint_lobes_row(ellipse, origin, edge, origin + f32(j) * edge);
     var sum = vec2f(0.0);
     while j <= last {
-        var seen = GlintSeenLobe();
-        while j <= last && !seen.cut {
-            while row.x <= row.y && !seen.cut {
+        var given = GlintConditionalLobe();
+        while j <= last && !given.cut {
+            while row.x <= row.y && !given.cut {
                 let centre = origin + (vec2f(f32(row.x), f32(j)) + 0.5) * edge;
                 let lobe = glint_lobes_box_lobe(glint_surface_patch_at(q, centre), vec2f(edge));
-                seen = glint_lobes_seen(q.point, lobe, frame.mean - centre);
-                sum += vec2f(select(seen.density, 0.0, seen.cut), seen.share);
+                given = glint_lobes_conditional(q.point, lobe, frame.mean - centre);
+                sum += vec2f(select(given.density, 0.0, given.cut), given.share);
                 row.x += 1;
             }
-            if !seen.cut {
+            if !given.cut {
                 j += 1;
                 row = glint_lobes_row(ellipse, origin, edge, origin + f32(j) * edge);
             }
         }
-        if seen.cut {
-            sum.x += seen.density / glint_lobes_inside_disk(seen.mean, seen.covariance);
+        if given.cut {
+            sum.x += given.density / glint_lobes_inside_disk(given.mean, given.covariance);
         }
     }
     return sum;

@@ -10,9 +10,9 @@ use crate::output;
 use glam::Vec3;
 use glint_formats::{Limits, Pack};
 use glint_view::bench::{BenchSettings, Setup, measure, table};
-use glint_view::gpu::{Gpu, GpuError, Wish};
+use glint_view::gpu::{AdapterChoice, Gpu, GpuError};
 use glint_view::render::{
-    LightKind, Material, Method, Overlay, Picture, Renderer, SWAP_LAYERS, Shown, ToneMapping, View, picture,
+    LightKind, Material, Method, Overlay, Picture, Renderer, SWAP_LAYERS, Subject, ToneMapping, View, picture,
 };
 use glint_view::scene::{Mesh, MeshError, Orbit, Placement};
 use glint_view::settings::{Against, Layout, Settings};
@@ -36,7 +36,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     if args.picture.opens_window(args.list) {
         return window(args, placement, reports, mesh, terminal);
     }
-    let gpu = Gpu::headless(&wish(args))?;
+    let gpu = Gpu::headless(&adapter(args))?;
     check_size(&gpu, size(args))?;
     terminal.detail(&format!("adapter: {}", gpu.adapter_line()));
     let subjects = upload(&gpu, &reports, &args.material)?;
@@ -59,8 +59,8 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     turntable(args, &gpu, &mut renderer, &subjects.shown, settings, folder, terminal)
 }
 
-fn wish(args: &Args) -> Wish {
-    Wish { name: args.picture.adapter.clone() }
+fn adapter(args: &Args) -> AdapterChoice {
+    AdapterChoice { name: args.picture.adapter.clone() }
 }
 
 /// Says whether the adapter draws pictures of a size.
@@ -105,7 +105,7 @@ fn window(
     let start = Start {
         title: format!("{} - glint-view", packs.join(" ")),
         size: size(args),
-        wish: wish(args),
+        adapter: adapter(args),
         meshes,
         load: Box::new(move |gpu| {
             let subjects = upload(gpu, &reports, &flags)?;
@@ -165,7 +165,7 @@ fn mesh_of(args: &Args, terminal: Terminal) -> Result<Mesh, Failure> {
     Ok(mesh)
 }
 
-fn entry_name(shown: &Shown) -> String {
+fn entry_name(shown: &Subject) -> String {
     if shown.name.is_empty() {
         shown.method.name().to_owned()
     } else {
@@ -185,8 +185,8 @@ fn list(gpu: &Gpu, subjects: &Subjects) -> String {
 }
 
 /// Index of what a flag names: an entry as `--list` prints it, or the first of a method.
-fn find(list: &[Shown], flag: &str, name: &str) -> Result<usize, Failure> {
-    let fits = |shown: &Shown| entry_name(shown) == name || shown.method.name() == name;
+fn find(list: &[Subject], flag: &str, name: &str) -> Result<usize, Failure> {
+    let fits = |shown: &Subject| entry_name(shown) == name || shown.method.name() == name;
     list.iter().position(fits).ok_or_else(|| {
         let names: Vec<String> = list.iter().map(entry_name).collect();
         Failure::usage(format!("{flag} '{name}': the packs have no such entry; there is {}", names.join(", ")))
@@ -194,7 +194,7 @@ fn find(list: &[Shown], flag: &str, name: &str) -> Result<usize, Failure> {
 }
 
 /// What the flags ask for, through a camera that sees all of the mesh or is where `placement` says.
-fn settings(args: &Args, list: &[Shown], camera: Orbit, placement: Option<Placement>) -> Result<Settings, Failure> {
+fn settings(args: &Args, list: &[Subject], camera: Orbit, placement: Option<Placement>) -> Result<Settings, Failure> {
     let mut settings = Settings::new(list, camera);
     if let Some(placement) = placement {
         settings.camera.place(placement);
@@ -300,7 +300,7 @@ fn turntable(
     args: &Args,
     gpu: &Gpu,
     renderer: &mut Renderer,
-    list: &[Shown],
+    list: &[Subject],
     mut settings: Settings,
     folder: &Path,
     terminal: Terminal,

@@ -4,9 +4,9 @@
 use glint_bake_core::dictionary::{self, quality, sections};
 use glint_bake_core::progress::Silent;
 use glint_formats::Codec;
-use glint_view::gpu::{ResourceSet, Wish};
+use glint_view::gpu::{AdapterChoice, ResourceSet};
 use glint_view::methods;
-use glint_view::render::{Material, Method, Picture, Shown};
+use glint_view::render::{Material, Method, Picture, Subject};
 use glint_view::scene::Mesh;
 use glint_view::settings::Settings;
 use glint_view::window::{Hooks, Loaded, Start, run};
@@ -32,11 +32,11 @@ fn main() -> ExitCode {
     let start = Start {
         title: "glint-view".to_owned(),
         size: [1280, 720],
-        wish: Wish::default(),
+        adapter: AdapterChoice::default(),
         meshes: vec![("sphere".to_owned(), Mesh::sphere(64)), ("plane".to_owned(), Mesh::plane(2.0))],
         load: Box::new(move |gpu| {
             let material = Material { density: 2.0e5, ..Material::default() };
-            let shown = |method, data| Shown {
+            let shown = |method, data| Subject {
                 name: String::new(),
                 method,
                 data: Rc::new(data),

@@ -39,7 +39,7 @@ pub enum GpuError {
 
 /// Which adapter is wanted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Wish {
+pub struct AdapterChoice {
     /// Part of the adapter's name, in any case; any adapter without.
     pub name: Option<String>,
 }
@@ -65,14 +65,18 @@ const OPTIONAL: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY;
 
 impl Gpu {
     /// The device of the wished adapter, without a window.
-    pub fn headless(wish: &Wish) -> Result<Gpu, GpuError> {
+    pub fn headless(choice: &AdapterChoice) -> Result<Gpu, GpuError> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-        Gpu::new(instance, None, wish)
+        Gpu::new(instance, None, choice)
     }
 
     /// The device of the wished adapter; with a surface, of one that can draw to it.
-    pub fn new(instance: wgpu::Instance, surface: Option<&wgpu::Surface<'_>>, wish: &Wish) -> Result<Gpu, GpuError> {
-        let adapter = pollster::block_on(choose(&instance, surface, wish))?;
+    pub fn new(
+        instance: wgpu::Instance,
+        surface: Option<&wgpu::Surface<'_>>,
+        choice: &AdapterChoice,
+    ) -> Result<Gpu, GpuError> {
+        let adapter = pollster::block_on(choose(&instance, surface, choice))?;
         let info = adapter.get_info();
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("glint-view"),
@@ -168,9 +172,9 @@ impl Gpu {
 async fn choose(
     instance: &wgpu::Instance,
     surface: Option<&wgpu::Surface<'_>>,
-    wish: &Wish,
+    choice: &AdapterChoice,
 ) -> Result<wgpu::Adapter, GpuError> {
-    let Some(name) = &wish.name else {
+    let Some(name) = &choice.name else {
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
             compatible_surface: surface,

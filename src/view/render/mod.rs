@@ -6,7 +6,7 @@ mod picture;
 mod pipelines;
 mod present;
 mod renderer;
-mod shown;
+mod subject;
 mod targets;
 mod timing;
 mod uniforms;
@@ -14,7 +14,7 @@ mod uniforms;
 pub use picture::{Picture, picture, read_picture};
 pub use present::{Display, Overlay, ToneMapping};
 pub use renderer::{Compare, Renderer, Side, View};
-pub use shown::{LightKind, Method, Shown};
+pub use subject::{LightKind, Method, Subject};
 pub use uniforms::{
     ACCURATE, Camera, Environment, Lights, MAX_POINT_LIGHTS, Material, PointLight, RectLight, SWAP_LAYERS, Scene, Sun,
 };

@@ -1,7 +1,7 @@
 //! Pipelines that draw a mesh by a method, made when they are first needed.
 
 use super::present::Overlay;
-use super::shown::Method;
+use super::subject::Method;
 use super::targets::{DEPTH, RADIANCE};
 use crate::gpu::{Gpu, GpuError, ResourceSet, Resources};
 use crate::scene::Vertex;

@@ -3,7 +3,7 @@
 use super::accumulate::Accumulate;
 use super::pipelines::{Key, Pipelines};
 use super::present::{Display, Present, PresentUniform, Show};
-use super::shown::Shown;
+use super::subject::Subject;
 use super::targets::{Targets, view};
 use super::timing::Timing;
 use super::uniforms::{Material, Scene, SceneUniform};
@@ -17,7 +17,7 @@ use std::rc::Rc;
 #[derive(Clone, Debug)]
 pub struct Side {
     /// Method and material.
-    pub shown: Shown,
+    pub shown: Subject,
     /// Whether the method's reference is drawn in its place, one sample a frame.
     pub reference: bool,
 }

@@ -124,7 +124,7 @@ impl Method {
 
 /// A method with data and parameters, ready to draw.
 #[derive(Clone, Debug)]
-pub struct Shown {
+pub struct Subject {
     /// Name of the material in the pack; empty for the smooth BRDF.
     pub name: String,
     /// Method.
@@ -141,7 +141,7 @@ pub struct Shown {
     pub rim_roughness: f32,
 }
 
-impl Shown {
+impl Subject {
     /// All pipeline constants of its program for a material.
     pub(super) fn pipeline_constants(&self, material: &Material) -> Vec<(&'static str, f64)> {
         let mut constants = self.constants.clone();

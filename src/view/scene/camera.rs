@@ -185,14 +185,14 @@ impl Orbit {
         let depth = seen.map(|point| (point - position).dot(forward)).filter(|&depth| depth > 0.0);
         let (Some(point), Some(depth)) = (seen, depth) else {
             // A distance that a text set beyond the limits stays there until it is changed towards them.
-            let wished = self.distance * factor;
-            self.distance = wished.clamp(limits[0].min(self.distance), limits[1].max(self.distance));
+            let zoomed = self.distance * factor;
+            self.distance = zoomed.clamp(limits[0].min(self.distance), limits[1].max(self.distance));
             return;
         };
-        let wished = (depth * factor).clamp(limits[0].min(depth), limits[1].max(depth));
-        let moved = point + (position - point) * (wished / depth);
-        self.distance = wished;
-        self.target = moved + forward * wished;
+        let zoomed = (depth * factor).clamp(limits[0].min(depth), limits[1].max(depth));
+        let moved = point + (position - point) * (zoomed / depth);
+        self.distance = zoomed;
+        self.target = moved + forward * zoomed;
     }
 }
 

@@ -5,8 +5,8 @@ use super::interface::Interface;
 use super::panel::{self, Facts};
 use super::stage::{Load, Recovery, Stage};
 use super::surface::{Acquired, Surface};
-use crate::gpu::{GpuError, Wish};
-use crate::render::{Picture, Shown};
+use crate::gpu::{AdapterChoice, GpuError};
+use crate::render::{Picture, Subject};
 use crate::scene::{Mesh, Orbit};
 use crate::settings::Settings;
 use glam::Vec2;
@@ -26,7 +26,7 @@ const MAX_TRIES: u32 = 100;
 
 /// Settings that the window opens with, for what can be shown and a camera that sees all of the first mesh; or what is wrong
 /// with the user's wishes.
-pub type Prepare = Box<dyn FnOnce(&[Shown], Orbit) -> Result<Settings, String>>;
+pub type Prepare = Box<dyn FnOnce(&[Subject], Orbit) -> Result<Settings, String>>;
 /// Saves a picture; what it did, or why it could not.
 pub type Save = Box<dyn FnMut(&Picture) -> Result<String, String>>;
 
@@ -37,7 +37,7 @@ pub struct Start {
     /// Pixels of the picture.
     pub size: [u32; 2],
     /// Which adapter.
-    pub wish: Wish,
+    pub adapter: AdapterChoice,
     /// Meshes to choose from with their names, at least one.
     pub meshes: Vec<(String, Mesh)>,
     /// Brings the data to a device.
@@ -81,7 +81,7 @@ pub fn run(start: Start) -> Result<(), WindowError> {
     let mut app = App {
         title: start.title,
         size: start.size,
-        wish: start.wish,
+        adapter: start.adapter,
         meshes: start.meshes,
         load: start.load,
         save: start.save,
@@ -102,7 +102,7 @@ pub fn run(start: Start) -> Result<(), WindowError> {
 struct App {
     title: String,
     size: [u32; 2],
-    wish: Wish,
+    adapter: AdapterChoice,
     meshes: Vec<(String, Mesh)>,
     load: Load,
     save: Save,
@@ -131,7 +131,7 @@ struct Open {
 impl App {
     /// Device, surface and data for a window, the first time or after a loss.
     fn open(&mut self, events: &ActiveEventLoop, window: Arc<Window>) -> Result<(), WindowError> {
-        let (gpu, surface) = Surface::new(&window, events.owned_display_handle(), &self.wish)?;
+        let (gpu, surface) = Surface::new(&window, events.owned_display_handle(), &self.adapter)?;
         let mesh = self.set.as_ref().map_or(0, |(_, controls)| controls.mesh);
         let Some((_, mesh)) = self.meshes.get(mesh) else {
             return Err(GpuError::BadPack("there is no mesh to show".to_owned()).into());

@@ -2,7 +2,7 @@
 
 use super::controls::{Action, Controls, Mode};
 use super::lights;
-use crate::render::{ACCURATE, Material, Method, Overlay, SWAP_LAYERS, Shown, ToneMapping};
+use crate::render::{ACCURATE, Material, Method, Overlay, SWAP_LAYERS, Subject, ToneMapping};
 use crate::settings::{Against, Settings};
 use egui::{Context, Slider, Ui};
 
@@ -31,7 +31,7 @@ pub(super) fn show(
     context: &Context,
     controls: &mut Controls,
     settings: &mut Settings,
-    list: &[Shown],
+    list: &[Subject],
     facts: &Facts,
 ) -> Option<Action> {
     if !controls.panel {
@@ -54,7 +54,7 @@ fn parts(
     ui: &mut Ui,
     controls: &mut Controls,
     settings: &mut Settings,
-    list: &[Shown],
+    list: &[Subject],
     facts: &Facts,
 ) -> Option<Action> {
     let mut action = None;
@@ -90,14 +90,14 @@ fn section(ui: &mut Ui, title: &str, open: bool, show: impl FnOnce(&mut Ui)) -> 
     egui::CollapsingHeader::new(title).default_open(open).show(ui, show).body_returned.is_some()
 }
 
-fn name(shown: &Shown) -> String {
+fn name(shown: &Subject) -> String {
     match shown.name.as_str() {
         "" => shown.method.name().to_owned(),
         name => format!("{}: {name}", shown.method.name()),
     }
 }
 
-fn method(ui: &mut Ui, settings: &mut Settings, list: &[Shown]) {
+fn method(ui: &mut Ui, settings: &mut Settings, list: &[Subject]) {
     for (index, shown) in list.iter().enumerate() {
         let key = if index < 9 { format!("{}  ", index + 1) } else { String::new() };
         ui.radio_value(&mut settings.shown, index, format!("{key}{}", name(shown)));
@@ -179,7 +179,7 @@ fn texels(ui: &mut Ui, material: &mut Material) {
     ui.add(Slider::new(&mut material.texels_per_unit, 1.0..=65_536.0).logarithmic(true).text("texels / unit"));
 }
 
-fn comparison(ui: &mut Ui, controls: &mut Controls, settings: &mut Settings, list: &[Shown]) {
+fn comparison(ui: &mut Ui, controls: &mut Controls, settings: &mut Settings, list: &[Subject]) {
     ui.horizontal_wrapped(|ui| {
         for (mode, label) in
             [(Mode::None, "none"), (Mode::Split, "split"), (Mode::Ab, "A/B (space)"), (Mode::Error, "error")]

@@ -1,7 +1,7 @@
 //! All that lives on the device, and what happens when it is lost.
 
 use crate::gpu::{Gpu, GpuError, Resources};
-use crate::render::{Picture, Renderer, Shown, read_picture};
+use crate::render::{Picture, Renderer, Subject, read_picture};
 use crate::scene::Mesh;
 use crate::settings::Settings;
 use std::rc::Rc;
@@ -10,7 +10,7 @@ use std::rc::Rc;
 #[derive(Clone, Debug)]
 pub struct Loaded {
     /// What can be chosen, at least one.
-    pub list: Vec<Shown>,
+    pub list: Vec<Subject>,
     /// Environment of the scene, if there is one.
     pub environment: Option<Rc<Resources>>,
     /// What the user should know.
@@ -62,7 +62,7 @@ impl Recovery {
 #[derive(Debug)]
 pub(super) struct Stage {
     pub gpu: Gpu,
-    pub list: Vec<Shown>,
+    pub list: Vec<Subject>,
     pub notes: Vec<String>,
     pub renderer: Renderer,
     target: Option<(wgpu::Texture, wgpu::TextureView)>,
@@ -142,13 +142,13 @@ impl Stage {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::{ResourceSet, Wish};
+    use crate::gpu::{AdapterChoice, ResourceSet};
     use crate::render::{Material, Method};
     use crate::scene::Orbit;
 
     /// The smooth BRDF on a sphere; none without an adapter.
     fn stage() -> Option<(Stage, Settings)> {
-        let gpu = match Gpu::headless(&Wish::default()) {
+        let gpu = match Gpu::headless(&AdapterChoice::default()) {
             Ok(gpu) => gpu,
             Err(error) if std::env::var_os("GLINT_REQUIRE_ADAPTER").is_none() => {
                 eprintln!("skipped: {error}");
@@ -165,7 +165,7 @@ mod tests {
     fn smooth() -> Load {
         Box::new(|gpu| {
             let data = Rc::new(ResourceSet::default().finish(gpu));
-            let shown = Shown {
+            let shown = Subject {
                 name: String::new(),
                 method: Method::Smooth,
                 data,
@@ -195,7 +195,8 @@ mod tests {
                 return;
             }
             verdict.unwrap();
-            stage = Stage::new(Gpu::headless(&Wish::default()).unwrap(), &mut smooth(), &Mesh::sphere(16)).unwrap();
+            stage = Stage::new(Gpu::headless(&AdapterChoice::default()).unwrap(), &mut smooth(), &Mesh::sphere(16))
+                .unwrap();
             stage.draw(&settings, [64, 48]).unwrap();
             recovery.frame();
             assert_eq!(stage.picture().unwrap(), before, "the picture is the same again");

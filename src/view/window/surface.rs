@@ -1,6 +1,6 @@
 //! What the window is drawn to.
 
-use crate::gpu::{Gpu, GpuError, Wish};
+use crate::gpu::{AdapterChoice, Gpu, GpuError};
 use std::sync::Arc;
 use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
@@ -25,11 +25,15 @@ pub(super) enum Acquired {
 
 impl Surface {
     /// A device that can draw to the window, and the window's surface on it.
-    pub fn new(window: &Arc<Window>, display: OwnedDisplayHandle, wish: &Wish) -> Result<(Gpu, Surface), GpuError> {
+    pub fn new(
+        window: &Arc<Window>,
+        display: OwnedDisplayHandle,
+        adapter: &AdapterChoice,
+    ) -> Result<(Gpu, Surface), GpuError> {
         let instance =
             wgpu::Instance::new(wgpu::InstanceDescriptor::new_with_display_handle_from_env(Box::new(display)));
         let surface = create(&instance, window)?;
-        let gpu = Gpu::new(instance, Some(&surface), wish)?;
+        let gpu = Gpu::new(instance, Some(&surface), adapter)?;
         let size = window.inner_size();
         let capabilities = surface.get_capabilities(&gpu.adapter);
         let mut config = surface

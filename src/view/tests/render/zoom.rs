@@ -3,7 +3,7 @@
 
 use crate::adapter::gpu;
 use crate::subjects::{camera, index_of, mean_radiance, subjects, wall};
-use glint_view::render::{Compare, Shown, Side, View};
+use glint_view::render::{Compare, Side, Subject, View};
 
 /// Frames of the zoom, each this much farther away: a twentieth of the picture is new in each, which alone changes the mean where
 /// few features are in view.
@@ -19,7 +19,7 @@ fn a_slow_zoom_does_not_pop() {
         let Some(smooth) = shown.method.baseline() else { continue };
         let name = shown.method.name();
         let material = shown.material;
-        let baseline = Shown { material, ..subjects.shown[index_of(&subjects, smooth)].clone() };
+        let baseline = Subject { material, ..subjects.shown[index_of(&subjects, smooth)].clone() };
         let baseline = Compare::Single(Side { shown: baseline, reference: false });
         let (mesh, _, mut view) = wall(&subjects, index, [160, 120]);
         let mut renderer = subjects.renderer(gpu, &mesh).unwrap();
