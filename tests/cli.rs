@@ -32,6 +32,9 @@ mod export;
 mod generate;
 #[path = "cli/info.rs"]
 mod info;
+#[cfg(feature = "view")]
+#[path = "cli/inputs_mesh.rs"]
+mod inputs_mesh;
 #[path = "cli/lobes.rs"]
 mod lobes;
 #[path = "cli/ninja.rs"]

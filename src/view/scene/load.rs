@@ -1,8 +1,8 @@
 //! A mesh from an OBJ or glTF file.
 
-use super::assemble::Part;
+use super::assemble::{Part, Parts};
 use super::fault::{Fault, read_file};
-use super::mesh::{Bounds, MAX_FILE_BYTES, MAX_TRIANGLES, MAX_VERTICES, Mesh};
+use super::mesh::{Bounds, MAX_FILE_BYTES, MAX_VERTICES, Mesh};
 use super::{glb, obj};
 use std::path::{Path, PathBuf};
 
@@ -75,18 +75,18 @@ impl Mesh {
 }
 
 /// One mesh of the lists of triangles that a file holds.
-fn of_parts(parts: Vec<Part>) -> Result<Mesh, Fault> {
-    let mut mesh = Mesh::default();
-    let triangles: usize = parts.iter().map(Part::triangles).sum();
+fn of_parts(read: Parts) -> Result<Mesh, Fault> {
+    let mut mesh = Mesh { notes: read.notes, ..Mesh::default() };
+    let triangles: usize = read.parts.iter().map(Part::triangles).sum();
     if triangles == 0 {
         return Err(Fault::Bad("there are no triangles in it".to_owned()));
     }
-    if triangles > MAX_TRIANGLES {
-        return Err(Fault::TooLarge(format!("it has {triangles} triangles, {MAX_TRIANGLES} are the limit")));
+    if read.parts.iter().all(|part| !part.has_area()) {
+        return Err(Fault::Bad(format!("it has no triangle with an area, only {triangles} without")));
     }
-    let whole = Bounds::of(parts.iter().flat_map(Part::positions));
-    for part in parts {
-        part.append_to(&mut mesh, whole)?;
+    let whole = Bounds::of(read.parts.iter().flat_map(Part::positions));
+    for part in read.parts {
+        part.append_to(&mut mesh, whole);
         if mesh.vertices.len() > MAX_VERTICES {
             return Err(Fault::TooLarge(format!("it has more than {MAX_VERTICES} vertices, which are the limit")));
         }
