@@ -6,6 +6,9 @@ use super::mesh::{Bounds, MAX_FILE_BYTES, MAX_VERTICES, Mesh};
 use super::{glb, obj};
 use std::path::{Path, PathBuf};
 
+/// Notes on a mesh, at most: a file may have any number of materials.
+const MAX_NOTES: usize = 20;
+
 /// Why a mesh file gives no mesh. Each message names the file, what is wrong and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum MeshError {
@@ -93,6 +96,11 @@ fn of_parts(read: Parts) -> Result<Mesh, Fault> {
     }
     mesh.notes.sort();
     mesh.notes.dedup();
+    if mesh.notes.len() > MAX_NOTES {
+        let more = mesh.notes.len() - MAX_NOTES;
+        mesh.notes.truncate(MAX_NOTES);
+        mesh.notes.push(format!("and {more} more of such notes"));
+    }
     Ok(mesh)
 }
 

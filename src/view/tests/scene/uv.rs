@@ -107,6 +107,16 @@ fn what_is_made_up_is_said() {
     assert_uv(&mesh, &[[0.0, 1.0], [1.0, 1.0], [0.0, 0.0]]);
 }
 
+#[test]
+fn notes_have_an_end() {
+    let primitives: Vec<Spec> = (0..50).map(|material| triangle(&[("TEXCOORD_0", UV)], material)).collect();
+    let materials: Vec<_> =
+        (0..50).map(|i| json!({"name": format!("M{i}"), "emissiveTexture": {"index": 0, "texCoord": 1}})).collect();
+    let mesh = load("a.glb", &file(&primitives, json!(materials))).unwrap();
+    assert_eq!(mesh.notes.len(), 21);
+    assert_eq!(mesh.notes[20], "and 31 more of such notes");
+}
+
 /// Tangents of a file point along its uv: a larger scale keeps them, a turn does not.
 #[test]
 fn tangents_go_with_a_turned_texture() {
