@@ -32,6 +32,10 @@ mod export;
 mod generate;
 #[path = "cli/info.rs"]
 mod info;
+#[path = "cli/inputs_build.rs"]
+mod inputs_build;
+#[path = "cli/inputs_files.rs"]
+mod inputs_files;
 #[cfg(feature = "view")]
 #[path = "cli/inputs_mesh.rs"]
 mod inputs_mesh;

@@ -78,6 +78,7 @@ impl PackBuilder {
             entry.write(&mut out);
         }
         header::seal(&mut out);
+        out.reserve_exact((end as usize).saturating_sub(out.len()));
         for (entry, payload) in entries.iter().zip(&payloads) {
             out.resize(entry.offset as usize, 0);
             out.extend_from_slice(payload);
@@ -99,7 +100,7 @@ fn check_payload(section: &Section, label: &str) -> Result<(), FormatError> {
             Err(refuse(String::from("the texture format is not one this version writes")))
         }
         None if found > params::MAX_BYTES as u64 => {
-            Err(refuse(format!("parameters have at most {} bytes, found {found}", params::MAX_BYTES)))
+            Err(FormatError::ParametersTooLarge { most: params::MAX_BYTES, found: section.payload.len() })
         }
         None => Ok(()),
     }

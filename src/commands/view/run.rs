@@ -5,6 +5,7 @@ use crate::canvas::Canvas;
 use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
 use crate::info::Report;
+use crate::input::guarded;
 use crate::output;
 use glam::Vec3;
 use glint_formats::{Limits, Pack};
@@ -36,6 +37,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         return window(args, placement, reports, mesh, terminal);
     }
     let gpu = Gpu::headless(&wish(args))?;
+    check_size(&gpu, size(args))?;
     terminal.detail(&format!("adapter: {}", gpu.adapter_line()));
     let subjects = upload(&gpu, &reports, &args.material)?;
     for note in subjects.notes() {
@@ -59,6 +61,17 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
 
 fn wish(args: &Args) -> Wish {
     Wish { name: args.picture.adapter.clone() }
+}
+
+/// Says whether the adapter draws pictures of a size.
+fn check_size(gpu: &Gpu, [width, height]: [u32; 2]) -> Result<(), Failure> {
+    let most = gpu.device.limits().max_texture_dimension_2d;
+    if width.max(height) <= most {
+        return Ok(());
+    }
+    let message =
+        format!("--size: the adapter draws at most {most} pixels a side, found {width}x{height}; ask for fewer");
+    Err(Failure::new(Exit::LimitExceeded, message))
 }
 
 fn size(args: &Args) -> [u32; 2] {
@@ -136,7 +149,7 @@ fn mesh_of(args: &Args, terminal: Terminal) -> Result<Mesh, Failure> {
             ShapeKind::Sphere => Mesh::sphere(64),
         });
     };
-    let mesh = Mesh::load(path).map_err(|error| {
+    let failure = |error: MeshError| {
         let exit = match error {
             MeshError::Io { .. } => Exit::InputOutput,
             MeshError::Bad { .. } => Exit::BadInput,
@@ -144,7 +157,8 @@ fn mesh_of(args: &Args, terminal: Terminal) -> Result<Mesh, Failure> {
             MeshError::TooLarge { .. } => Exit::LimitExceeded,
         };
         Failure::new(exit, error.to_string())
-    })?;
+    };
+    let mesh = guarded(path, || Mesh::load(path).map_err(failure))?;
     for note in &mesh.notes {
         terminal.say(&format!("{}: {note}", path.display()));
     }
@@ -291,7 +305,7 @@ fn turntable(
     folder: &Path,
     terminal: Terminal,
 ) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|e| Failure::io(folder, "cannot be created", &e))?;
+    output::create_folder(folder)?;
     let count = args.picture.frames.unwrap_or(TURNTABLE);
     let start = settings.camera.azimuth;
     for index in 0..count {

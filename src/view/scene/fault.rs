@@ -40,7 +40,7 @@ pub(super) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, Fault> {
 /// Text without the byte order mark of UTF-8; UTF-16 is refused.
 pub(super) fn without_mark(bytes: &[u8]) -> Result<&[u8], Fault> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
-        return Err(Fault::Unsupported("its text is UTF-16; save it as UTF-8".to_owned()));
+        return Err(Fault::Bad("its text is UTF-16, UTF-8 is needed".to_owned()));
     }
     Ok(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes))
 }

@@ -53,7 +53,11 @@ impl MeshError {
             Fault::Bad(what) => MeshError::Bad { path, what },
             Fault::Unsupported(what) => MeshError::Unsupported { path, what },
             Fault::TooLarge(what) => MeshError::TooLarge { path, what },
-            Fault::Io(file, source) => MeshError::Io { path: file, source },
+            Fault::Io(file, source) if file == path => MeshError::Io { path, source },
+            Fault::Io(file, source) => {
+                let said = format!("a buffer of {}: {source}", path.display());
+                MeshError::Io { path: file, source: std::io::Error::new(source.kind(), said) }
+            }
         }
     }
 }
