@@ -39,6 +39,8 @@ mod inputs_files;
 #[cfg(feature = "view")]
 #[path = "cli/inputs_mesh.rs"]
 mod inputs_mesh;
+#[path = "cli/inputs_raster.rs"]
+mod inputs_raster;
 #[path = "cli/lobes.rs"]
 mod lobes;
 #[path = "cli/ninja.rs"]
