@@ -5,6 +5,7 @@ pub mod environment;
 mod error;
 mod exr_file;
 mod format;
+mod icc;
 mod limits;
 mod meaning;
 mod normal_map;
@@ -13,8 +14,9 @@ mod pixels;
 mod primaries;
 mod raster;
 pub mod synthetic;
+mod transfer;
 
 pub use error::InputError;
 pub use limits::MAX_SIDE;
 pub use normal_map::{LoadedMap, load_normal_map};
-pub use options::{Channels, Crop, DEFAULT_MAX_MEMORY, InputOptions};
+pub use options::{Channels, ColourSpace, Crop, DEFAULT_MAX_MEMORY, InputOptions};

@@ -14,10 +14,49 @@ pub(super) struct Pixels {
 pub(super) enum Values {
     /// One channel.
     Grey(Vec<f32>),
+    /// One channel and alpha.
+    GreyAlpha(Vec<[f32; 2]>),
     /// Three channels in the order of the file.
     Rgb(Vec<[f32; 3]>),
     /// Three channels and alpha.
     Rgba(Vec<[f32; 4]>),
+}
+
+impl Values {
+    /// Number of texels.
+    pub fn len(&self) -> usize {
+        match self {
+            Values::Grey(v) => v.len(),
+            Values::GreyAlpha(v) => v.len(),
+            Values::Rgb(v) => v.len(),
+            Values::Rgba(v) => v.len(),
+        }
+    }
+
+    /// A texel as red, green, blue and alpha: grey is all three colours, and alpha is 1 where there is none.
+    pub fn texel(&self, at: usize) -> [f32; 4] {
+        match self {
+            Values::Grey(v) => [v[at], v[at], v[at], 1.0],
+            Values::GreyAlpha(v) => [v[at][0], v[at][0], v[at][0], v[at][1]],
+            Values::Rgb(v) => [v[at][0], v[at][1], v[at][2], 1.0],
+            Values::Rgba(v) => v[at],
+        }
+    }
+
+    /// All texels in order.
+    pub fn texels(&self) -> impl Iterator<Item = [f32; 4]> {
+        (0..self.len()).map(|at| self.texel(at))
+    }
+
+    /// Whether texels have an alpha of their own.
+    pub fn has_alpha(&self) -> bool {
+        matches!(self, Values::GreyAlpha(_) | Values::Rgba(_))
+    }
+
+    /// Whether the three colours are one channel.
+    pub fn is_grey(&self) -> bool {
+        matches!(self, Values::Grey(_) | Values::GreyAlpha(_))
+    }
 }
 
 /// How pixels were stored.
