@@ -4,6 +4,7 @@
 
 use super::error::InputError;
 use super::exr_file;
+use super::guard::guarded;
 use super::limits::{check_size, from_bake, read};
 use super::options::InputOptions;
 use glint_bake_core::environment::EnvironmentImage;
@@ -33,16 +34,7 @@ pub fn load_environment(path: &Path, max_memory: u64) -> Result<LoadedEnvironmen
     let options = InputOptions { max_memory, ..InputOptions::default() };
     let bytes = read(path, max_memory)?;
     let mut warnings = Vec::new();
-    let (width, height, pixels) = if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
-        exr_file::decode_radiance(path, &bytes, &options)?
-    } else if bytes.starts_with(b"#?") {
-        decode_hdr(path, &bytes, &options, &mut warnings)?
-    } else {
-        return Err(InputError::unsupported(
-            path,
-            "expected linear radiance as Radiance HDR or OpenEXR; images of other formats have no range for lights",
-        ));
-    };
+    let (width, height, pixels) = guarded(path, || decode(path, &bytes, &options, &mut warnings))?;
     let image = EnvironmentImage::new(width, height, pixels).map_err(|e| from_bake(path, e))?;
     if let Some((x, y)) = image.report.first_negative {
         let count = image.report.negative_pixels;
@@ -51,6 +43,25 @@ pub fn load_environment(path: &Path, max_memory: u64) -> Result<LoadedEnvironmen
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let digest = InputDigest::of(&name, &bytes);
     Ok(LoadedEnvironment { image, digest, warnings })
+}
+
+/// Pixels of any format.
+fn decode(
+    path: &Path,
+    bytes: &[u8],
+    options: &InputOptions,
+    warnings: &mut Vec<String>,
+) -> Result<(u32, u32, Vec<[f32; 3]>), InputError> {
+    if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
+        exr_file::decode_radiance(path, bytes, options)
+    } else if bytes.starts_with(b"#?") {
+        decode_hdr(path, bytes, options, warnings)
+    } else {
+        Err(InputError::unsupported(
+            path,
+            "expected linear radiance as Radiance HDR or OpenEXR; images of other formats have no range for lights",
+        ))
+    }
 }
 
 fn decode_hdr(

@@ -83,6 +83,8 @@ fn first_layer(
         .all_channels()
         .first_valid_layer()
         .all_attributes()
+        // On other threads a panic of the decoder could not be caught: their pool ends the process.
+        .non_parallel()
         .from_buffered(Cursor::new(bytes))
         .map_err(|e| from_exr(path, e))?;
     let channels = &image.layer_data.channel_data.list;

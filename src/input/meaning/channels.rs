@@ -2,8 +2,8 @@
 //!
 //! A map of two channels leaves the others constant (BC5: blue 0, ½ or 1) or copies one into them (DXT5nm: x in alpha, y in
 //! green; grey with alpha). In a map of three, blue is z: it varies with x and y. So a map is refused when blue is constant
-//! and yet not the z that x and y ask for, as they are or decoded as sRGB, or when alpha varies and the colours hold one channel only. A map that is flat,
-//! whose z rounds to one step, or whose alpha holds something else, is neither.
+//! and yet not the z that x and y ask for, neither as they are nor decoded as sRGB, or when alpha varies and the colours hold
+//! one channel only. A map that is flat, whose z rounds to one step, or whose alpha holds something else, is neither.
 
 use super::coverage::Coverage;
 use super::scale::Scale;
@@ -149,7 +149,7 @@ pub(super) fn refuse_two(
     let pair = constant(2) && (!constant(0) || !constant(1)) && survey.share(survey.too_long[0]) <= STRAY;
     // A shallow map that was encoded by the sRGB curve has the right z once it is decoded.
     let wrong = |transfer: Transfer| survey.share(wrong_z(values, scale, coverage, &transfer)) > STRAY;
-    if pair && wrong(Transfer::Linear) && wrong(Transfer::Srgb) {
+    if pair && wrong(Transfer::Linear) && (scale == Scale::Signed || wrong(Transfer::Srgb)) {
         return Err(InputError::bad(
             path,
             format!(
