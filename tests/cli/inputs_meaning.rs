@@ -333,7 +333,7 @@ const GAMMA_2_2: &[u8] = b"curv\0\0\0\0\0\0\0\x01\x02\x33";
 fn colour_tags_are_believed_where_the_data_bear_them_out() {
     let (plain, dark) = (leather(64, 64, 1), rgb(|r, g, b| [srgb(r), srgb(g), srgb(b)]));
     let gamma = rgb(|r, g, b| [r, g, b].map(|v| (255.0 * (v as f32 / 255.0).powf(1.0 / 2.2)).round() as u8));
-    let photo = RgbImage::from_fn(64, 64, |x, y| Rgb([40 + (x as u8), 60 + (y as u8), 30]));
+    let photo = RgbImage::from_fn(64, 64, |x, y| Rgb([40 + (x as u8), 60 + (y as u8), 30 + (y as u8)]));
     let chunk = |map: &RgbImage, kind: &[u8; 4], content: &[u8]| with_chunk(&png(map.clone()), kind, content);
     let gama = |map: &RgbImage, value: u32| chunk(map, b"gAMA", &value.to_be_bytes());
     let (kept, decoded) = ("taken as they are", "bear it out");
