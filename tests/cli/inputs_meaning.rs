@@ -361,7 +361,7 @@ fn colour_tags_are_believed_where_the_data_bear_them_out() {
         ("dark_kept.png", chunk(&dark, b"sRGB", &[0]), &["--colour-space", "linear"], 0, "as asked"),
         ("dark_pq.png", chunk(&dark, b"cICP", &[9, 16, 0, 1]), &[], 4, "--colour-space linear"),
         ("photo.png", chunk(&photo, b"sRGB", &[0]), &[], 4, "--colour-space linear"),
-        ("photo.png", chunk(&photo, b"sRGB", &[0]), &["--assume-linear"], 0, "as asked"),
+        ("dark_alias.png", chunk(&dark, b"sRGB", &[0]), &["--assume-linear"], 0, "as asked"),
         ("pair.png", chunk(&plain, b"sRGB", &[0]), &["--channels", "xy"], 0, "two channels have no lengths"),
     ]);
     let done = bake(folder.path(), &["lobes", "photo.png", "-o", "x", "--assume-linear", "--colour-space", "srgb"]);
