@@ -102,8 +102,8 @@ impl From<glint_view::gpu::GpuError> for Failure {
     fn from(error: glint_view::gpu::GpuError) -> Failure {
         use glint_view::gpu::GpuError;
         let exit = match error {
-            GpuError::NoAdapter { .. } | GpuError::NoDevice { .. } => Exit::Unsupported,
-            GpuError::Failed(_) => Exit::Unexpected,
+            GpuError::NoAdapter { .. } | GpuError::NoDevice { .. } | GpuError::Failed(_) => Exit::Unsupported,
+            GpuError::Refused(_) => Exit::Unexpected,
             GpuError::BadPack(_) => Exit::BadInput,
         };
         Failure::new(exit, error.to_string())

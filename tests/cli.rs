@@ -34,6 +34,10 @@ mod folder;
 mod generate;
 #[path = "cli/info.rs"]
 mod info;
+#[path = "cli/inputs_build.rs"]
+mod inputs_build;
+#[path = "cli/inputs_files.rs"]
+mod inputs_files;
 #[path = "cli/inputs_meaning.rs"]
 mod inputs_meaning;
 #[path = "cli/lobes.rs"]

@@ -4,10 +4,12 @@ use super::option_list::OptionList;
 use super::values;
 use crate::exit::Failure;
 use crate::input::{Channels, ColourSpace, Crop, InputOptions};
+use crate::reading;
 use clap::ValueEnum;
 use glint_bake_core::normal_map::GreenAxis;
 use glint_formats::Wrap;
 use glint_formats::container::MAX_NAME_BYTES;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// How normal maps are read.
@@ -179,17 +181,42 @@ pub fn check_name(name: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The stem of a file's name, with a number when that is taken.
-pub fn unique_name(path: &Path, taken: &[String]) -> String {
-    let stem: String = path.file_stem().unwrap_or_default().to_string_lossy().chars().collect();
-    let stem: String = stem.chars().map(|c| if c.is_control() { '_' } else { c }).collect();
-    let mut number = 1;
-    let mut name = cut(&stem, "");
-    while taken.contains(&name) {
-        number += 1;
-        name = cut(&stem, &format!("-{number}"));
+/// Names of materials that are given out, each once.
+#[derive(Debug, Default)]
+pub struct Names {
+    taken: HashSet<String>,
+    /// The number that a stem had last, so that thousands of equal stems are not tried anew.
+    numbers: HashMap<String, u32>,
+}
+
+impl Names {
+    /// Takes a name; false when it is taken already.
+    pub fn take(&mut self, name: &str) -> bool {
+        self.taken.insert(name.to_owned())
     }
-    name
+
+    /// The stem of a file's name, with a number when that is taken.
+    pub fn of_file(&mut self, path: &Path) -> String {
+        let stem = stem_of(path);
+        let mut name = cut(&stem, "");
+        let number = self.numbers.entry(stem.clone()).or_insert(1);
+        while !self.taken.insert(name.clone()) {
+            *number += 1;
+            name = cut(&stem, &format!("-{number}"));
+        }
+        name
+    }
+}
+
+/// Name of the one material of a file.
+pub fn name_of_file(path: &Path) -> String {
+    Names::default().of_file(path)
+}
+
+fn stem_of(path: &Path) -> String {
+    let file = reading::file_name(path);
+    let stem = Path::new(&file).file_stem().unwrap_or_default().to_string_lossy();
+    stem.chars().map(|c| if c.is_control() { '_' } else { c }).collect()
 }
 
 /// The stem, shortened so that it fits a name together with `suffix`.
@@ -199,4 +226,28 @@ fn cut(stem: &str, suffix: &str) -> String {
         end -= 1;
     }
     format!("{}{suffix}", &stem[..end])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_files_are_unique_and_fit() {
+        let mut names = Names::default();
+        assert!(names.take("a-2"));
+        let of = |names: &mut Names, path: &str| names.of_file(Path::new(path));
+        assert_eq!(of(&mut names, "x/a.png"), "a");
+        assert_eq!(of(&mut names, "y/a.exr"), "a-3");
+        assert!(!names.take("a-3"));
+        let long = format!("{}.png", "é".repeat(60));
+        assert!(of(&mut names, &long).len() <= MAX_NAME_BYTES);
+        assert!(of(&mut names, &long).ends_with("-2"));
+        assert_eq!(name_of_file(Path::new("-")), "stdin");
+        // Equal names in great number take no longer each.
+        for number in 2..100_000 {
+            names.of_file(Path::new("same.png"));
+            assert!(number < 99_999 || of(&mut names, "same.png") == "same-99999");
+        }
+    }
 }

@@ -4,6 +4,7 @@
 //! it separates folders on Windows. A `#` at the start of an argument begins a comment up to the line's end.
 
 use crate::exit::Failure;
+use crate::reading;
 use std::ffi::OsString;
 use std::path::Path;
 
@@ -20,9 +21,8 @@ pub fn expand(args: impl Iterator<Item = OsString>) -> Result<Vec<OsString>, Fai
 }
 
 fn read(path: &Path) -> Result<Vec<OsString>, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|e| {
-        Failure::io(path, "the response file cannot be read (write ./@name for a file whose name starts with @)", &e)
-    })?;
+    let cannot = "the response file cannot be read (write ./@name for a file whose name starts with @)";
+    let text = reading::text(path, cannot)?;
     let words = split(&text).map_err(|why| Failure::usage(format!("{}: {why}", path.display())))?;
     match words.iter().find(|word| word.starts_with('@')) {
         Some(nested) => Err(Failure::usage(format!(
@@ -33,9 +33,14 @@ fn read(path: &Path) -> Result<Vec<OsString>, Failure> {
     }
 }
 
+/// Lines of any system: they end with CR LF, LF or CR.
+fn lines(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().flat_map(|line| line.split('\r'))
+}
+
 fn split(text: &str) -> Result<Vec<String>, String> {
     let mut words = Vec::new();
-    for (number, line) in text.lines().enumerate() {
+    for (number, line) in lines(text).enumerate() {
         let mut word: Option<String> = None;
         let mut quote: Option<char> = None;
         for c in line.chars() {

@@ -4,6 +4,7 @@ use crate::cli::Terminal;
 use crate::commands::flag_tables;
 use crate::exit::{Exit, Failure};
 use crate::output;
+use crate::reading;
 use clap::ValueEnum;
 use clap_complete::Shell;
 use clap_mangen::Man;
@@ -71,7 +72,7 @@ pub fn run(args: &Args, programs: [clap::Command; 3], terminal: Terminal) -> Res
         let text: Vec<u8> = documents.into_iter().flat_map(|document| document.bytes).collect();
         return output::print(&String::from_utf8_lossy(&text));
     };
-    std::fs::create_dir_all(folder).map_err(|e| Failure::io(folder, "cannot be created", &e))?;
+    output::create_folder(folder)?;
     for document in documents {
         let path = folder.join(document.name);
         output::write(&path, &document.bytes)?;
@@ -95,10 +96,7 @@ fn completions(programs: [clap::Command; 3], shell: Shell) -> Vec<Document> {
 fn tables(programs: &[clap::Command], folder: Option<&Path>) -> Result<Document, Failure> {
     let path = folder.map(|folder| folder.join(flag_tables::FILE)).filter(|path| path.exists());
     let text = match path {
-        Some(path) => {
-            let page = std::fs::read_to_string(&path).map_err(|e| Failure::io(&path, "cannot be read", &e))?;
-            flag_tables::renew(&page, programs)?
-        }
+        Some(path) => flag_tables::renew(&reading::text(&path, "cannot be read")?, programs)?,
         None => flag_tables::page(programs),
     };
     Ok(Document { name: flag_tables::FILE.to_owned(), bytes: text.into_bytes() })

@@ -109,7 +109,7 @@ fn extract(report: &Report, pack_path: &Path, section: &str, path: &Path, termin
     let payload =
         pack.payload(entry).map_err(|issue| Failure::new(Exit::BadInput, format!("{}: {issue}", report.file)))?;
     output::write(path, &payload)?;
-    terminal.say(&format!("{}: written, {} bytes of {}", path.display(), payload.len(), entry.label()));
+    terminal.say(&format!("{}: written, {} bytes of {}", output::shown(path), payload.len(), entry.label()));
     Ok(())
 }
 

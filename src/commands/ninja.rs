@@ -4,6 +4,7 @@ use crate::cli::Terminal;
 use crate::exit::Failure;
 use crate::output;
 use crate::project::{self, ninja, settled};
+use crate::reading;
 use std::path::{Path, PathBuf};
 
 /// Lines that the help shows and a test runs.
@@ -33,12 +34,12 @@ pub struct Args {
 pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let mut project = project::load(&args.project)?;
     settled::settle(&mut project, true, terminal)?;
-    let Some(path) = &args.output else {
-        return output::print(&ninja::manifest(&project, &args.program, Path::new("build.ninja")));
+    let Some(path) = args.output.as_ref().filter(|path| !reading::is_standard(path)) else {
+        return output::print(&ninja::manifest(&project, &args.program, Path::new("build.ninja"))?);
     };
     output::check_distinct(&[path], &[&args.project])?;
     output::check_writable(path)?;
-    output::write(path, ninja::manifest(&project, &args.program, path).as_bytes())?;
+    output::write(path, ninja::manifest(&project, &args.program, path)?.as_bytes())?;
     terminal.say(&format!("{}: written, {} packs", path.display(), project.targets.len()));
     Ok(())
 }

@@ -48,7 +48,12 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         return Ok(());
     }
     let path = project.path.display();
-    Err(Failure::new(Exit::BadInput, format!("{path}: the budgets cannot be kept; the plan is the nearest to them")))
+    Err(Failure::new(
+        Exit::BadInput,
+        format!(
+            "{path}: the budgets cannot be kept; the plan is the nearest to them. Raise error or bytes of the scene, or the nearest distance"
+        ),
+    ))
 }
 
 /// Says how good the packs are; a failure when one is not good enough.
@@ -63,6 +68,12 @@ fn measure(mut project: Project, terminal: Terminal) -> Result<(), Failure> {
     output::print(&text)?;
     match all.iter().filter(|(_, pack)| pack.error > pack.budget).count() {
         0 => Ok(()),
-        count => Err(Failure::new(Exit::BadInput, format!("{count} of {} packs exceed their error", all.len()))),
+        count => Err(Failure::new(
+            Exit::BadInput,
+            format!(
+                "{count} of {} packs exceed their error; glint-bake build --check says which are stale, and a smaller error in their tables asks for better ones",
+                all.len()
+            ),
+        )),
     }
 }

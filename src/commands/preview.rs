@@ -84,7 +84,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let (width, height) = args.size;
     let canvas = crate::cli::on_threads(args.threads, || render(&scene, width, height))?;
     output::write(&args.output, &canvas.to_png())?;
-    terminal.say(&format!("{}: written, {width} × {height}", args.output.display()));
+    terminal.say(&format!("{}: written, {width} × {height}", output::shown(&args.output)));
     Ok(())
 }
 
@@ -99,6 +99,12 @@ impl Look {
     fn choose(report: &Report, args: &Args) -> Result<Look, Failure> {
         let pack = report.sound()?;
         let names = sections::materials(pack);
+        if names.is_empty() {
+            let path = args.pack.display();
+            let message =
+                format!("{path}: holds no NDF maps, which are all that preview draws; see it with glint-view {path}");
+            return Err(Failure::new(Exit::Unsupported, message));
+        }
         let load = |name: &str| sections::from_pack(pack, name).map_err(|e| Failure::bake(&args.pack, &e));
         if let Some(name) = &args.material {
             if !names.contains(&name.as_str()) {
@@ -110,11 +116,7 @@ impl Look {
         if let Some(LayersInfo(layers)) = LayersInfo::all_of(pack).into_iter().next() {
             return Ok(Look { base: load(&layers.base)?, coat: Some(load(&layers.coat)?), layers: Some(layers) });
         }
-        let Some(first) = names.first() else {
-            let message = format!("{}: expected a material to show, found none in the pack", args.pack.display());
-            return Err(Failure::new(Exit::BadInput, message));
-        };
-        Ok(Look { base: load(first)?, coat: None, layers: None })
+        Ok(Look { base: load(names[0])?, coat: None, layers: None })
     }
 
     fn scene(&self, args: &Args) -> Scene<'_> {

@@ -5,6 +5,7 @@ use crate::cli::{Terminal, values};
 use crate::exit::{Exit, Failure};
 use crate::input::{Crop, InputOptions};
 use crate::output;
+use crate::reading;
 use crate::report::{Document, HEADLINE, REPORTS, Report, Settings};
 use std::path::{Path, PathBuf};
 
@@ -95,7 +96,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         with_headline(readme, HEADLINE)?;
         output::check_writable(readme)?;
     }
-    std::fs::create_dir_all(&args.output).map_err(|e| Failure::io(&args.output, "cannot be created", &e))?;
+    output::create_folder(&args.output)?;
     for report in &reports {
         output::check_writable(&args.output.join(format!("{}.md", report.name)))?;
     }
@@ -172,7 +173,7 @@ fn write(document: &Document, args: &Args, terminal: Terminal) -> Result<(), Fai
 
 /// A file with a headline in place of the line that starts like it.
 fn with_headline(path: &Path, headline: &str) -> Result<String, Failure> {
-    let old = std::fs::read_to_string(path).map_err(|e| Failure::io(path, "cannot be read", &e))?;
+    let old = reading::text(path, "cannot be read")?;
     if !old.lines().any(|line| line.starts_with(HEADLINE)) {
         let message = format!("{}: expected a line that starts with '{HEADLINE}', found none", path.display());
         return Err(Failure::new(Exit::BadInput, message));

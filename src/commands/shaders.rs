@@ -109,7 +109,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         return Ok(());
     }
     for folder in paths.iter().filter_map(|path| path.parent()) {
-        std::fs::create_dir_all(folder).map_err(|e| Failure::io(folder, "cannot be created", &e))?;
+        output::create_folder(folder)?;
     }
     paths.iter().try_for_each(|path| output::check_writable(path))?;
     for (file, path) in files.iter().zip(&paths) {

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// A folder or file that cannot be written; a section that cannot be used.
 pub fn write_all(pack: &Pack, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    std::fs::create_dir_all(folder).map_err(|e| Failure::io(folder, "cannot be created", &e))?;
+    output::create_folder(folder)?;
     let mut written = Vec::new();
     let mut write = |name: String, bytes: Vec<u8>| {
         let path = folder.join(name);

@@ -4,6 +4,7 @@ use super::parameters::ParametersInfo;
 use crate::exit::{Exit, Failure};
 use crate::methods;
 use crate::methods::contents::{Contents, decode_all};
+use crate::reading;
 use glint_formats::provenance::{PROVENANCE, Provenance};
 use glint_formats::{Issue, IssueCode, Limits, OpenError, Pack, Resource, SectionEntry, Severity};
 use serde::Serialize;
@@ -65,6 +66,13 @@ impl GpuBytes {
 impl Report {
     /// Looks at a file.
     pub fn of_file(path: &Path, limits: &Limits) -> Report {
+        if reading::is_stream(path) {
+            // One byte more than is allowed tells that there are too many.
+            return match reading::read_at_most(path, limits.max_file_bytes.saturating_add(1)) {
+                Ok(bytes) => Report::of_bytes(path, bytes, limits),
+                Err(error) => Report { error: Some(format!("cannot be read: {error}")), ..Report::empty(path, 0) },
+            };
+        }
         let bytes = std::fs::metadata(path).map_or(0, |meta| meta.len());
         match Pack::open(path, limits) {
             Ok(pack) => Report::of_pack(path, pack),
@@ -75,10 +83,10 @@ impl Report {
         }
     }
 
-    /// Looks at bytes that `path` will have.
-    pub fn of_bytes(path: &Path, bytes: Vec<u8>) -> Report {
+    /// Looks at bytes that `path` has or will have.
+    pub fn of_bytes(path: &Path, bytes: Vec<u8>, limits: &Limits) -> Report {
         let len = bytes.len() as u64;
-        match Pack::from_bytes(bytes, &Limits::default()) {
+        match Pack::from_bytes(bytes, limits) {
             Ok(pack) => Report::of_pack(path, pack),
             Err(issues) => Report { issues, ..Report::empty(path, len) },
         }
@@ -129,7 +137,9 @@ impl Report {
             return fail(error.clone());
         }
         match (self.issues.iter().find(|issue| issue.severity == Severity::Error), &self.pack) {
-            (Some(issue), _) => fail(issue.to_string()),
+            (Some(issue), _) => {
+                fail(format!("{issue}; bake the pack anew, or see all that is wrong with glint-info --verify"))
+            }
             (None, Some(pack)) => Ok(pack),
             (None, None) => fail("cannot be opened".into()),
         }

@@ -5,7 +5,7 @@
 use super::error::InputError;
 use super::exr_file;
 use super::guard::guarded;
-use super::limits::{check_size, from_bake, read};
+use super::limits::{check_size, digest, from_bake, read};
 use super::options::InputOptions;
 use glint_bake_core::environment::EnvironmentImage;
 use glint_formats::provenance::InputDigest;
@@ -40,8 +40,7 @@ pub fn load_environment(path: &Path, max_memory: u64) -> Result<LoadedEnvironmen
         let count = image.report.negative_pixels;
         warnings.push(format!("{count} pixels are negative, the first of them ({x}, {y}); taken as 0"));
     }
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let digest = InputDigest::of(&name, &bytes);
+    let digest = digest(path, &bytes, &mut warnings);
     Ok(LoadedEnvironment { image, digest, warnings })
 }
 

@@ -75,7 +75,8 @@ pub(super) fn extension_note(path: &Path, format: Format) -> Option<String> {
         },
     };
     let found = extension(path);
-    (!extensions.contains(&found.as_str()))
+    // A stream has no name that could promise anything.
+    (!found.is_empty() && !extensions.contains(&found.as_str()))
         .then(|| format!("named .{found}, but the content is {name}; read as {name}"))
 }
 

@@ -1,30 +1,37 @@
 //! What is refused before it is decoded, for every kind of file.
 
 use super::error::InputError;
+use crate::reading::{self, ReadError};
 use glint_bake_core::error::BakeError;
+use glint_formats::provenance::InputDigest;
 use std::path::Path;
 
 /// Most texels a side, the size that every GPU class we bake for can hold.
 pub const MAX_SIDE: u32 = 16_384;
 
-/// The bytes of a file, when they fit.
+/// The bytes of a file or a pipe, when they fit. They are read once.
 pub(super) fn read(path: &Path, max_memory: u64) -> Result<Vec<u8>, InputError> {
-    let io = |source| InputError::Io { path: path.to_owned(), source };
-    let meta = std::fs::metadata(path).map_err(io)?;
-    if meta.is_dir() {
-        return Err(io(std::io::Error::new(std::io::ErrorKind::IsADirectory, "is a folder; name an image file in it")));
-    }
-    if meta.len() > max_memory {
-        return Err(InputError::limit(
-            path,
-            format!("the file has {} bytes, the limit is {max_memory}; raise --max-memory", meta.len()),
-        ));
-    }
-    let bytes = std::fs::read(path).map_err(io)?;
+    let bytes = reading::read(path, max_memory).map_err(|error| match error {
+        ReadError::Io(source) => InputError::Io { path: path.to_owned(), source },
+        ReadError::TooLarge(found) => {
+            let found = found.map_or("more".to_owned(), |found| format!("{found} bytes"));
+            InputError::limit(
+                path,
+                format!("expected a file of at most {max_memory} bytes, found {found}; raise --max-memory"),
+            )
+        }
+    })?;
     if bytes.is_empty() {
         return Err(InputError::bad(path, "the file is empty (0 bytes); expected an image"));
     }
     Ok(bytes)
+}
+
+/// Digest of a file's bytes under the name that packs record; a note when that is another name than the file's.
+pub(super) fn digest(path: &Path, bytes: &[u8], notes: &mut Vec<String>) -> InputDigest {
+    let (name, note) = reading::recorded_name(path);
+    notes.extend(note);
+    InputDigest::of(&name, bytes)
 }
 
 /// Refuses a size before anything is allocated for it. `decoder_bytes_per_texel` is what the decoder itself holds.

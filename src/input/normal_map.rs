@@ -10,7 +10,7 @@
 use super::error::InputError;
 use super::format::{self, Format};
 use super::guard::guarded;
-use super::limits::{from_bake, read};
+use super::limits::{digest, from_bake, read};
 use super::options::{Channels, Crop, InputOptions};
 use super::pixels::Pixels;
 use super::{exr_file, meaning, raster};
@@ -56,7 +56,7 @@ pub fn load_normal_map(path: &Path, options: &InputOptions) -> Result<LoadedMap,
     Ok(LoadedMap {
         map,
         report,
-        digest: InputDigest::of(&path.file_name().unwrap_or_default().to_string_lossy(), &bytes),
+        digest: digest(path, &bytes, &mut warnings),
         warnings,
         convention: convention(options),
     })

@@ -58,7 +58,7 @@ struct Planner<'a> {
 }
 
 impl Planner<'_> {
-    /// Of several methods, the scene's lights choose; the last one is planned when there is no other.
+    /// Of several methods, the scene's lights choose. One that the project names is planned whatever the lights are.
     fn add(&mut self, table: usize, planned: &Planned) -> Result<(), Failure> {
         let lights = self.scene.lights;
         if matches!(planned.subject, Subject::Environment(_)) && !lights.environment {
@@ -66,24 +66,28 @@ impl Planner<'_> {
             return Ok(());
         }
         let name = &planned.name;
+        let is_named = planned.alternatives.len() == 1;
         let mut is_made = false;
+        let mut beyond = Vec::new();
         for (number, alternative) in planned.alternatives.iter().enumerate() {
             let Some(planning) = alternative.method.planning() else { continue };
-            let needed = number + 1 == planned.alternatives.len() && !is_made;
-            if !needed && !(planning.is_lit)(lights) {
-                let Planning { product, light, .. } = planning;
+            let Planning { product, light, .. } = planning;
+            if !is_named && !(planning.is_lit)(lights) {
                 self.dropped.push(format!("{product} of {name}: the scene has no {light}"));
                 continue;
             }
             let pack = if is_made { format!("{name}-{}", alternative.method.name()) } else { name.clone() };
             match self.drafts(pack, (table, number), planned, planning) {
                 Ok(()) => is_made = true,
-                Err(failure) if failure.exit == Exit::LimitExceeded && !needed => {
-                    self.dropped.push(format!("{} of {name}: {}", planning.product, failure.message));
-                }
+                Err(failure) if failure.exit == Exit::LimitExceeded => beyond.push((product, failure)),
                 Err(failure) => return Err(failure),
             }
         }
+        if !is_made && let Some((_, failure)) = beyond.pop() {
+            return Err(failure);
+        }
+        let line = |(product, failure): (&str, Failure)| format!("{product} of {name}: {}", failure.message);
+        self.dropped.extend(beyond.into_iter().map(line));
         Ok(())
     }
 

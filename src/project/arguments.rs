@@ -8,9 +8,11 @@ use super::model::{CommandLine, Target};
 use crate::cli::{RunFlags, typed};
 use crate::methods::bake::Bake;
 use crate::methods::{MethodCommand, find};
+use crate::reading::is_standard;
 use clap::builder::ValueParser;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
 use std::any::TypeId;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::de::DeValue;
@@ -77,8 +79,8 @@ impl Methods {
             for value in self.values(method, option.entry, folder).map_err(refuse)? {
                 match (key, value) {
                     (INPUT, Value::Text(text)) => line.inputs.push(text),
-                    (_, Value::Text(text)) => line.flags.push((key.to_owned(), typed(key, &text))),
-                    (_, Value::Flag) => line.flags.push((key.to_owned(), typed(key, ""))),
+                    (_, Value::Text(text)) => line.flags.push((key.to_owned(), flag(key, &text))),
+                    (_, Value::Flag) => line.flags.push((key.to_owned(), typed(key, "").into())),
                 }
             }
         }
@@ -134,7 +136,7 @@ impl Methods {
         line: &CommandLine,
         pack: &Path,
     ) -> Result<(ArgMatches, Arc<dyn Bake>), OptionError> {
-        let command = ["glint-bake", method].into_iter().map(str::to_owned).chain(line.arguments(pack));
+        let command = ["glint-bake", method].into_iter().map(OsString::from).chain(line.arguments(pack));
         let parsed = self.command.try_get_matches_from_mut(command);
         let fault = |error: &clap::Error| {
             let why = reason(error);
@@ -187,10 +189,13 @@ impl Methods {
         if !repeats {
             texts = vec![texts.join(",")];
         }
-        if is_path(arg) {
-            texts = texts.into_iter().map(|text| folder_join(folder, &text)).collect();
+        if !is_path(arg) {
+            return Ok(texts.into_iter().map(|text| Value::Text(text.into())).collect());
         }
-        Ok(texts.into_iter().map(Value::Text).collect())
+        if texts.iter().any(|text| is_standard(Path::new(text))) {
+            return Err("a project has no standard input or output, which - is; a file of this name is ./-".into());
+        }
+        Ok(texts.iter().map(|text| Value::Text(folder_join(folder, text))).collect())
     }
 
     /// Whether a key is one of a method's; `method` and `input` are everybody's.
@@ -247,8 +252,18 @@ impl Methods {
 enum Value {
     /// A flag that takes none.
     Flag,
-    /// The text of one.
-    Text(String),
+    /// The text of one. A path may lie in a folder whose name is no UTF-8.
+    Text(OsString),
+}
+
+/// A flag with its value as it is typed; without one when that is empty.
+fn flag(key: &str, value: &OsStr) -> OsString {
+    let mut text = OsString::from(typed(key, ""));
+    if !value.is_empty() {
+        text.push("=");
+        text.push(value);
+    }
+    text
 }
 
 fn is_path(arg: &Arg) -> bool {
@@ -261,8 +276,8 @@ fn path_of(matches: &ArgMatches, id: &str) -> Option<PathBuf> {
 }
 
 /// A path of the project file as the process sees it.
-pub(super) fn folder_join(folder: &Path, text: &str) -> String {
-    if folder == Path::new(".") { text.to_owned() } else { folder.join(text).to_string_lossy().into_owned() }
+pub(super) fn folder_join(folder: &Path, text: &str) -> OsString {
+    if folder == Path::new(".") { text.into() } else { folder.join(text).into_os_string() }
 }
 
 /// A value as it would be typed.

@@ -17,7 +17,9 @@ use crate::methods::ALL;
 use crate::methods::method::Method;
 use crate::output::folder_of;
 use crate::plan::{Alternative, Planned};
+use crate::reading;
 use crate::scene::{Subject, SubjectKind};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
 
@@ -31,16 +33,33 @@ struct Problems<'a> {
     path: &'a Path,
     text: &'a str,
     found: Vec<String>,
+    /// Those beyond [`MOST_PROBLEMS`].
+    more: usize,
 }
+
+/// Problems that are said; nobody mends more at a time, and each costs a look through the file.
+const MOST_PROBLEMS: usize = 100;
 
 impl Problems<'_> {
     fn push(&mut self, at: usize, key: &str, why: &str) {
+        if self.found.len() == MOST_PROBLEMS {
+            self.more += 1;
+            return;
+        }
         let line = 1 + self.text[..at].matches('\n').count();
         let colon = if key.is_empty() { "" } else { ": " };
         let message = format!("{}:{line}: {key}{colon}{why}", self.path.display());
         if !self.found.contains(&message) {
             self.found.push(message);
         }
+    }
+
+    /// All of them, and how many more there are.
+    fn into_lines(mut self) -> Vec<String> {
+        if self.more > 0 {
+            self.found.push(format!("{}: and {} more", self.path.display(), self.more));
+        }
+        self.found
     }
 
     /// What is wrong with an option of a table, or with the table `name` that begins at `at`.
@@ -60,7 +79,7 @@ impl Problems<'_> {
 /// A file that cannot be read; usage, when it is not a project or an option is wrong. Every wrong option is named
 /// with its line.
 pub fn load(path: &Path) -> Result<Project, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|e| Failure::io(path, "cannot be read", &e))?;
+    let text = reading::text(path, "cannot be read")?;
     parse(path, &text).map_err(|errors| Failure::usage(errors.join("\n")))
 }
 
@@ -69,13 +88,13 @@ pub fn load(path: &Path) -> Result<Project, Failure> {
 /// # Errors
 /// Every problem with its line.
 fn parse(path: &Path, text: &str) -> Result<Project, Vec<String>> {
-    let mut problems = Problems { path, text, found: Vec::new() };
+    let mut problems = Problems { path, text, found: Vec::new(), more: 0 };
     let document = match DeTable::parse(text) {
         Ok(document) => document.into_inner(),
         Err(error) => {
             let at = error.span().map_or(0, |span| span.start.min(text.len()));
             problems.push(at, "", error.message());
-            return Err(problems.found);
+            return Err(problems.into_lines());
         }
     };
     let folder = folder_of(path);
@@ -106,6 +125,7 @@ fn parse(path: &Path, text: &str) -> Result<Project, Vec<String>> {
         problems,
         methods: Methods::new(),
         defaults,
+        names: HashMap::new(),
         folder,
         project: Project { path: path.to_owned(), output, targets: Vec::new(), scene, planned: Vec::new() },
     };
@@ -113,7 +133,7 @@ fn parse(path: &Path, text: &str) -> Result<Project, Vec<String>> {
     for (group, entry) in tables {
         reader.table(group, entry);
     }
-    if reader.problems.found.is_empty() { Ok(reader.project) } else { Err(reader.problems.found) }
+    if reader.problems.found.is_empty() { Ok(reader.project) } else { Err(reader.problems.into_lines()) }
 }
 
 /// Reads one table after another.
@@ -121,6 +141,8 @@ struct Reader<'a> {
     problems: Problems<'a>,
     methods: Methods,
     defaults: Vec<Entry<'a>>,
+    /// Names that tables have, in lower case.
+    names: HashMap<String, &'a str>,
     folder: &'a Path,
     project: Project,
 }
@@ -143,12 +165,11 @@ impl<'a> Reader<'a> {
 
     fn table(&mut self, group: &str, entry: Entry<'a>) {
         let name = format!("{group}.{}", entry.key);
-        let mut taken = self.project.names();
-        if let Some(why) = bad_name(entry.key, taken.find(|taken| taken.to_lowercase() == entry.key.to_lowercase())) {
-            drop(taken);
+        // Some file systems have no upper and lower case.
+        let taken = self.names.insert(entry.key.to_lowercase(), entry.key);
+        if let Some(why) = bad_name(entry.key, taken) {
             return self.problems.push(entry.at, &name, &why);
         }
-        drop(taken);
         let DeValue::Table(table) = entry.value else {
             return self.problems.push(entry.at, &name, "expected a table of options");
         };

@@ -6,6 +6,7 @@ use crate::methods::bake::Bake;
 use crate::methods::method::Method;
 use crate::plan::Planned;
 use crate::scene::Scene;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -40,9 +41,9 @@ pub struct PlannedTable {
 #[derive(Clone, Debug, Default)]
 pub struct CommandLine {
     /// Every flag as it is typed, with the key that it stands for, in the order of the table.
-    pub flags: Vec<(String, String)>,
+    pub flags: Vec<(String, OsString)>,
     /// What is given without a flag.
-    pub inputs: Vec<String>,
+    pub inputs: Vec<OsString>,
 }
 
 impl CommandLine {
@@ -55,14 +56,16 @@ impl CommandLine {
     pub fn with(&self, key: &str, value: &str) -> CommandLine {
         let mut line = self.clone();
         if !line.flags.iter().any(|(other, _)| other == key) {
-            line.flags.push((key.to_owned(), typed(key, value)));
+            line.flags.push((key.to_owned(), typed(key, value).into()));
         }
         line
     }
 
     /// All arguments of a bake into `pack`.
-    pub fn arguments(&self, pack: &Path) -> Vec<String> {
-        let mut arguments = vec![format!("--output={}", pack.display())];
+    pub fn arguments(&self, pack: &Path) -> Vec<OsString> {
+        let mut output = OsString::from("--output=");
+        output.push(pack);
+        let mut arguments = vec![output];
         arguments.extend(self.flags.iter().map(|(_, flag)| flag.clone()));
         if !self.inputs.is_empty() {
             arguments.push("--".into());
@@ -97,7 +100,7 @@ pub struct Target {
 
 impl Target {
     /// Arguments of the bake on the command line.
-    pub fn arguments(&self) -> Vec<String> {
+    pub fn arguments(&self) -> Vec<OsString> {
         self.line.arguments(&self.pack)
     }
 
@@ -143,12 +146,6 @@ impl Project {
             self.targets.retain(|target| names.contains(&target.name));
         }
         Ok(())
-    }
-
-    /// Names of all tables that were read.
-    pub fn names(&self) -> impl Iterator<Item = &str> {
-        let targets = self.targets.iter().map(|target| target.name.as_str());
-        targets.chain(self.planned.iter().map(|table| table.planned.name.as_str()))
     }
 
     /// Where a pack lies.

@@ -8,6 +8,7 @@ use crate::exit::{Exit, Failure};
 use crate::methods::bake::Bake;
 use crate::output;
 use crate::plan::{self, Measured, Plan, Planned};
+use crate::reading;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -60,6 +61,12 @@ pub fn plan(project: &Project, terminal: Terminal) -> Result<Plan, Failure> {
             project.path.display()
         )));
     };
+    for path in inputs(project) {
+        // Every draft reads them again.
+        let meta = std::fs::metadata(&path);
+        let looked = meta.and_then(|meta| reading::check_regular(&meta));
+        looked.map_err(|e| Failure::io(&path, "cannot be read", &e))?;
+    }
     let planned: Vec<Planned> = project.planned.iter().map(|table| table.planned.clone()).collect();
     plan::plan(scene, &planned, &|name| project.pack(name), terminal)
 }

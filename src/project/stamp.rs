@@ -3,6 +3,7 @@
 //! As git's index does: size, times and inode stand for the content. Times are coarse, so a file that was changed just
 //! before it was looked at is not trusted: it could change once more within the same tick.
 
+use crate::reading;
 use serde::{Deserialize, Serialize};
 use std::fs::{File, Metadata};
 use std::io::{Read, Result};
@@ -72,9 +73,14 @@ fn entry(_meta: &Metadata) -> (u64, u64) {
 
 impl Stamp {
     /// The stamp of a file. It is read only when `known` does not tell.
+    ///
+    /// # Errors
+    /// What cannot be read, and what can be read only once.
     pub fn of(path: &Path, known: Option<&Stamp>) -> Result<Stamp> {
         let now = SystemTime::now();
-        let stat = Stat::of(path)?;
+        let meta = std::fs::metadata(path)?;
+        reading::check_regular(&meta)?;
+        let stat = Stat::from(&meta);
         match known {
             Some(known) if known.stat == Some(stat) => return Ok(known.clone()),
             _ => {}

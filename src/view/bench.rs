@@ -127,7 +127,7 @@ pub struct BenchRow {
 /// Measures the method of a setup, one of `subjects`, against its baseline.
 pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSettings) -> Result<BenchRow, GpuError> {
     let Compare::Single(Side { shown, .. }) = &setup.view.compare else {
-        return Err(GpuError::Failed("a bench has one side".into()));
+        return Err(GpuError::Refused("a bench has one side".into()));
     };
     let renderer = &mut subjects.renderer(gpu, &setup.mesh)?;
     let of = |view: &View, shown: &Shown, reference| View {
@@ -156,7 +156,7 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
     let mut operations = |shown| mean_count(gpu, renderer, &of(&setup.small, shown, false), Overlay::Operations);
     let (operations, baseline_operations) = (operations(shown)?, operations(&setup.baseline)?);
     let source = glint_shaders::program(shown.method.name(), &shown.files);
-    let instructions = glint_shaders::translate::spirv_instructions(&source).map_err(GpuError::Failed)?;
+    let instructions = glint_shaders::translate::spirv_instructions(&source).map_err(GpuError::Refused)?;
     // Glints under an environment have no reference but their mean over seeds.
     let has_reference = shown.method.usual_light() != LightKind::Environment;
     let error = if has_reference && settings.reference_samples > 0 {

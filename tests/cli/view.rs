@@ -156,6 +156,11 @@ fn what_cannot_be_shown_is_refused() {
     if self::folder().is_some() {
         refuses(&["dictionary.glintpack", "--method", "lobes", "--headless", "a.png"], 2, "there is dictionary");
         refuses(&["dictionary.glintpack", "--against", "lobes", "--headless", "a.png"], 2, "there is dictionary");
+        refuses(
+            &["dictionary.glintpack", "--size", "16384x4", "--headless", "a.png"],
+            6,
+            "pixels a side, found 16384x4",
+        );
     }
 }
 

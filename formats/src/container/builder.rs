@@ -100,7 +100,7 @@ fn check_payload(section: &Section, label: &str) -> Result<(), FormatError> {
             Err(refuse(String::from("the texture format is not one this version writes")))
         }
         None if found > params::MAX_BYTES as u64 => {
-            Err(refuse(format!("parameters have at most {} bytes, found {found}", params::MAX_BYTES)))
+            Err(FormatError::ParametersTooLarge { most: params::MAX_BYTES, found: section.payload.len() })
         }
         None => Ok(()),
     }

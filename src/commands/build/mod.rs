@@ -3,6 +3,7 @@
 mod work;
 
 use crate::cli::Terminal;
+use crate::depfile;
 use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::project::freshness::Freshness;
@@ -78,12 +79,16 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     if args.dry_run {
         return dry_run(&project, &states, terminal);
     }
+    let dependencies = match &args.depfile {
+        Some(path) => Some((path, depfile(&project)?)),
+        None => None,
+    };
     prepare(&project, args.depfile.as_deref())?;
     let in_flight = args.in_flight.unwrap_or(rayon::current_num_threads().min(MOST_IN_FLIGHT));
     let outcomes = work::all(&project, states, in_flight, terminal);
-    work::summary(&outcomes, terminal)?;
-    if let Some(path) = &args.depfile {
-        output::write(path, depfile(&project).as_bytes())?;
+    work::summary(&project, &outcomes, terminal)?;
+    if let Some((path, text)) = dependencies {
+        output::write(path, text.as_bytes())?;
     }
     match fit {
         Fit::Kept => Ok(()),
@@ -119,11 +124,11 @@ fn remove_remains(folder: &Path) {
 }
 
 /// A rule a pack: it depends on the project file and its inputs.
-fn depfile(project: &Project) -> String {
+fn depfile(project: &Project) -> Result<String, Failure> {
     let rule = |target: &Target| {
         let inputs: Vec<&Path> =
             [project.path.as_path()].into_iter().chain(target.inputs.iter().map(PathBuf::as_path)).collect();
-        output::depfile(&target.pack, &inputs)
+        depfile::rule(&target.pack, &inputs)
     };
     project.targets.iter().map(rule).collect()
 }

@@ -2,7 +2,7 @@
 
 use crate::cli::Terminal;
 use crate::commands::bake;
-use crate::exit::Failure;
+use crate::exit::{Exit, Failure};
 use crate::progress;
 use crate::project::freshness::Freshness;
 use crate::project::record::Record;
@@ -113,8 +113,8 @@ fn baked(project: &Project, target: &Target, state: &Freshness, part: Terminal) 
     Ok((before != Some(after), after.bytes()))
 }
 
-/// Says what was done; a failure when a target failed, with the code of the first one that did.
-pub fn summary(outcomes: &[Outcome], terminal: Terminal) -> Result<(), Failure> {
+/// Says what was done; a failure when targets failed, with the code of the first one and a list of all with theirs.
+pub fn summary(project: &Project, outcomes: &[Outcome], terminal: Terminal) -> Result<(), Failure> {
     let count = |is: &dyn Fn(&Outcome) -> bool| outcomes.iter().filter(|outcome| is(outcome)).count();
     let written = count(&|outcome| matches!(outcome, Outcome::Baked { changed: true }));
     let unchanged = count(&|outcome| matches!(outcome, Outcome::Baked { changed: false }));
@@ -127,11 +127,13 @@ pub fn summary(outcomes: &[Outcome], terminal: Terminal) -> Result<(), Failure> 
         }
     }
     terminal.say(&parts.join(", "));
-    let first = outcomes.iter().find_map(|outcome| match outcome {
-        Outcome::Failed(failure) => Some(failure.exit),
+    let mut exits = project.targets.iter().zip(outcomes).filter_map(|(target, outcome)| match outcome {
+        Outcome::Failed(failure) => Some((target.name.as_str(), failure.exit)),
         _ => None,
     });
-    first.map_or(Ok(()), |exit| {
-        Err(Failure::new(exit, format!("{failed} of {} packs could not be built", outcomes.len())))
-    })
+    let Some((name, first)) = exits.next() else { return Ok(()) };
+    let coded = |(name, exit): (&str, Exit)| format!("{name} (code {})", exit as u8);
+    let list: Vec<String> = [(name, first)].into_iter().chain(exits).map(coded).collect();
+    let message = format!("{failed} of {} packs could not be built: {}", outcomes.len(), list.join(", "));
+    Err(Failure::new(first, message))
 }

@@ -3,7 +3,7 @@
 mod look;
 
 use crate::cli::Terminal;
-use crate::exit::{Exit, Failure};
+use crate::exit::Failure;
 use crate::info::Report;
 use crate::input::synthetic;
 use crate::methods::ndf_maps::bake::{Baked, assemble, bake_material};
@@ -69,7 +69,7 @@ fn examples() -> [Example; 3] {
 /// Runs the subcommand.
 pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let folder = &args.output;
-    std::fs::create_dir_all(folder).map_err(|e| Failure::io(folder, "cannot be created", &e))?;
+    output::create_folder(folder)?;
     let (pack_path, picture_path) = (folder.join("demo.glintpack"), folder.join("demo.png"));
     output::check_writable(&pack_path)?;
     output::check_writable(&picture_path)?;
@@ -137,10 +137,11 @@ fn normal_map(image: &image::RgbImage) -> NormalMap {
 fn read_back(path: &Path) -> Result<Report, Failure> {
     let report = Report::of_file(path, &Limits::default());
     match report.issues.first() {
-        None if report.exit() == Exit::Success => Ok(report),
-        issue => {
-            let what = issue.map_or("it cannot be read back".into(), ToString::to_string);
-            Err(Failure::new(Exit::Unexpected, format!("{}: {what}; please report this", path.display())))
+        None => report.sound().map(|_| ()).map(|()| report),
+        Some(issue) => {
+            // The bytes were verified before they were written.
+            let what = format!("{}: it was written a moment ago and reads otherwise: {issue}", path.display());
+            Err(Failure::new(report.exit(), format!("{what}; does another program write to it?")))
         }
     }
 }

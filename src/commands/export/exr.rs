@@ -30,7 +30,9 @@ pub fn write(texture: &Texture, payload: &[u8]) -> Result<Option<Vec<u8>>, Failu
         .write()
         .non_parallel()
         .to_buffered(Cursor::new(&mut bytes))
-        .map_err(|e| Failure::new(Exit::Unexpected, format!("the EXR file cannot be made: {e}; please report this")))?;
+        .map_err(|e| {
+            Failure::new(Exit::Unsupported, format!("the EXR file cannot be made: {e}; give --to ktx2 or raw"))
+        })?;
     Ok(Some(bytes))
 }
 

@@ -8,13 +8,14 @@ use crate::cli::{Terminal, values};
 use crate::exit::{Exit, Failure};
 use crate::info::Report;
 use crate::output;
+use crate::reading;
 use format::Target;
 use glint_formats::export::{Texture, dds, ktx2};
 use glint_formats::provenance::{InputDigest, PROVENANCE};
 use glint_formats::{Limits, Pack, SectionEntry, WriteOutcome, kinds, vk_format};
 use sidecar::{FileInfo, Sidecar};
 use std::collections::HashSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Lines that `--help` shows and a test runs.
 const EXAMPLES: &str = "\
@@ -80,10 +81,10 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         terminal.say(&format!("would write {}; dry run, nothing was written", sidecar_path.display()));
         return Ok(());
     }
-    std::fs::create_dir_all(&args.output).map_err(|e| Failure::io(&args.output, "cannot be created", &e))?;
+    output::create_folder(&args.output)?;
     paths.iter().try_for_each(|path| output::check_writable(path))?;
 
-    let pack_name = args.pack.file_name().unwrap_or_default().to_string_lossy();
+    let (pack_name, _) = reading::recorded_name(&args.pack);
     let mut sidecar = Sidecar::new(InputDigest::of(&pack_name, pack.file_bytes()), args.to, &report.provenance);
     sidecar.parameters = report.parameters.iter().filter(|of| args.wants_name(&of.name)).collect();
     for (item, path) in items.iter().zip(&paths) {
@@ -94,6 +95,9 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         let outcome = output::write(path, &bytes)?;
         terminal.say(&format!("{}: {}{}", path.display(), said(outcome), remark(item.note)));
         sidecar.files.push(item.describe(&bytes));
+    }
+    if items.is_empty() {
+        terminal.say("no textures or buffers were asked for; parameters are in the JSON");
     }
     // The list comes last: who finds it finds the files.
     let outcome = output::write(&sidecar_path, sidecar.to_json().as_bytes())?;
@@ -183,7 +187,8 @@ fn file_name(entry: &SectionEntry, format: Target, taken: &mut HashSet<String>) 
 
 /// The pack's file name without its extension.
 fn stem(args: &Args) -> String {
-    args.pack.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    let file = reading::file_name(&args.pack);
+    Path::new(&file).file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 fn encode(item: &Item, payload: &[u8]) -> Result<Vec<u8>, Failure> {
@@ -198,8 +203,9 @@ fn encode(item: &Item, payload: &[u8]) -> Result<Vec<u8>, Failure> {
         _ => Some(payload.to_vec()),
     };
     encoded.ok_or_else(|| {
-        let message = format!("{}: the texture cannot be written; please report this", item.entry.label());
-        Failure::new(Exit::Unexpected, message)
+        let (label, extension) = (item.entry.label(), item.format.extension());
+        let message = format!("{label}: no {extension} file can have its format; give --to raw");
+        Failure::new(Exit::Unsupported, message)
     })
 }
 

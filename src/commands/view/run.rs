@@ -37,6 +37,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         return window(args, placement, reports, mesh, terminal);
     }
     let gpu = Gpu::headless(&wish(args))?;
+    check_size(&gpu, size(args))?;
     terminal.detail(&format!("adapter: {}", gpu.adapter_line()));
     let subjects = upload(&gpu, &reports, &args.material)?;
     for note in subjects.notes() {
@@ -60,6 +61,17 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
 
 fn wish(args: &Args) -> Wish {
     Wish { name: args.picture.adapter.clone() }
+}
+
+/// Says whether the adapter draws pictures of a size.
+fn check_size(gpu: &Gpu, [width, height]: [u32; 2]) -> Result<(), Failure> {
+    let most = gpu.device.limits().max_texture_dimension_2d;
+    if width.max(height) <= most {
+        return Ok(());
+    }
+    let message =
+        format!("--size: the adapter draws at most {most} pixels a side, found {width}x{height}; ask for fewer");
+    Err(Failure::new(Exit::LimitExceeded, message))
 }
 
 fn size(args: &Args) -> [u32; 2] {
@@ -293,7 +305,7 @@ fn turntable(
     folder: &Path,
     terminal: Terminal,
 ) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|e| Failure::io(folder, "cannot be created", &e))?;
+    output::create_folder(folder)?;
     let count = args.picture.frames.unwrap_or(TURNTABLE);
     let start = settings.camera.azimuth;
     for index in 0..count {

@@ -1,5 +1,6 @@
 //! Flags of `glint-bake environment`.
 
+use crate::cli::normal_maps::name_of_file;
 use crate::cli::{OptionList, RunFlags, values};
 use crate::delivery::Delivery;
 use clap::ValueEnum;
@@ -145,15 +146,7 @@ impl Args {
 
     /// Name of the environment in its pack: the file's, without what a section name cannot hold.
     pub fn name(&self) -> String {
-        let stem = self.input.file_stem().unwrap_or_default().to_string_lossy();
-        let mut name = String::new();
-        for c in stem.chars().map(|c| if c.is_control() { '_' } else { c }) {
-            if name.len() + c.len_utf8() > glint_formats::container::MAX_NAME_BYTES {
-                break;
-            }
-            name.push(c);
-        }
-        name
+        name_of_file(&self.input)
     }
 
     /// Where the pack goes.

@@ -1,7 +1,7 @@
 //! Flags of `glint-bake lobes`.
 
 use super::surface::SurfaceFlags;
-use crate::cli::normal_maps::{InputFlags, check_name, unique_name};
+use crate::cli::normal_maps::{InputFlags, check_name, name_of_file};
 use crate::cli::{OptionList, RunFlags, values};
 use crate::delivery::Delivery;
 use crate::exit::Failure;
@@ -167,7 +167,7 @@ impl Args {
     /// # Errors
     /// Usage, when it cannot be one.
     pub fn name(&self) -> Result<String, Failure> {
-        let Some(name) = &self.name else { return Ok(unique_name(&self.map, &[])) };
+        let Some(name) = &self.name else { return Ok(name_of_file(&self.map)) };
         check_name(name)?;
         Ok(name.clone())
     }

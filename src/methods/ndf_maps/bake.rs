@@ -4,7 +4,7 @@
 use super::args::{Args, Storage};
 use super::info::PAPER_TILE_BYTES;
 use crate::cli::Terminal;
-use crate::cli::normal_maps::{check_name, unique_name};
+use crate::cli::normal_maps::{Names, check_name};
 use crate::cli::values::name_of;
 use crate::exit::{Exit, Failure};
 use crate::input::{LoadedMap, load_normal_map};
@@ -160,9 +160,10 @@ fn names(args: &Args) -> Result<Vec<String>, Failure> {
         return Err(Failure::usage(format!("--name: expected at most one a map, found {names} names for {maps} maps")));
     }
     let mut names: Vec<String> = Vec::new();
+    let mut taken = Names::default();
     for name in &args.name {
         check_name(name)?;
-        if names.contains(name) {
+        if !taken.take(name) {
             return Err(Failure::usage(format!(
                 "--name: {name:?} is given twice; give each material a name of its own"
             )));
@@ -170,7 +171,7 @@ fn names(args: &Args) -> Result<Vec<String>, Failure> {
         names.push(name.clone());
     }
     for path in &args.maps[names.len()..] {
-        names.push(unique_name(path, &names));
+        names.push(taken.of_file(path));
     }
     Ok(names)
 }
@@ -265,7 +266,10 @@ fn check_material(
     max_memory: u64,
 ) -> BakeResult<()> {
     check_size(map).map_err(|error| match error {
-        BakeError::LimitExceeded(why) => BakeError::LimitExceeded(format!("{why} with --crop WxH+X+Y")),
+        BakeError::LimitExceeded(why) => BakeError::LimitExceeded(format!(
+            "{why} with --crop WxH+X+Y, or bake all of it with glint-bake lobes (in a project: method = \"lobes\" in a table \
+             without distance)"
+        )),
         other => other,
     })?;
     let needed = tile_count(map.width, map.height, options.min_tile) * PAPER_TILE_BYTES;

@@ -24,9 +24,14 @@ pub enum GpuError {
         /// What the driver says.
         reason: String,
     },
-    /// The device was lost, or refused a program or a buffer.
-    #[error("the GPU failed: {0}; please report this with the adapter's name")]
+    /// The device was lost or has no memory left, or the window takes no pictures.
+    #[error(
+        "the GPU failed: {0}; close what else uses it, ask for fewer pixels, or take another adapter with --adapter"
+    )]
     Failed(String),
+    /// The device refused a program or a command of ours.
+    #[error("the GPU refused: {0}; please report this with the adapter's name")]
+    Refused(String),
     /// A section is not what it should be.
     #[error("{0}")]
     BadPack(String),
@@ -52,7 +57,7 @@ pub struct Gpu {
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
-    lost: Arc<Mutex<Option<String>>>,
+    lost: Arc<Mutex<Option<GpuError>>>,
 }
 
 /// Features that are used where an adapter has them; everything works without.
@@ -80,14 +85,17 @@ impl Gpu {
         let record = Arc::clone(&lost);
         device.set_device_lost_callback(move |reason, message| {
             if let Ok(mut lost) = record.lock() {
-                lost.get_or_insert(format!("{reason:?}: {message}"));
+                lost.get_or_insert(GpuError::Failed(format!("{reason:?}: {message}")));
             }
         });
         let record = Arc::clone(&lost);
         // Whatever is done with a device that is lost is an error, too; the loss is what is told. Else it is a fault of ours.
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             if let Ok(mut lost) = record.lock() {
-                lost.get_or_insert_with(|| error.to_string());
+                lost.get_or_insert_with(|| match error {
+                    wgpu::Error::OutOfMemory { .. } => GpuError::Failed(error.to_string()),
+                    _ => GpuError::Refused(error.to_string()),
+                });
             }
         }));
         Ok(Gpu { instance, adapter, info, device, queue, lost })
@@ -106,7 +114,7 @@ impl Gpu {
     }
 
     /// Why the device was lost or failed, if it did.
-    pub fn lost(&self) -> Option<String> {
+    pub fn lost(&self) -> Option<GpuError> {
         self.lost.lock().ok().and_then(|lost| lost.clone())
     }
 
@@ -129,9 +137,9 @@ impl Gpu {
     /// A shader module that counts the operations it executes.
     ///
     /// # Errors
-    /// [`GpuError::Failed`] with what is wrong with the text.
+    /// [`GpuError::Refused`] with what is wrong with the text.
     pub fn counting_shader(&self, label: &str, source: &str) -> Result<wgpu::ShaderModule, GpuError> {
-        let module = glint_shaders::operations::counted(source).map_err(GpuError::Failed)?;
+        let module = glint_shaders::operations::counted(source).map_err(GpuError::Refused)?;
         self.module(label, wgpu::ShaderSource::Naga(Cow::Owned(module)))
     }
 
@@ -146,14 +154,14 @@ impl Gpu {
         let made = make();
         match pollster::block_on(scope.pop()) {
             None => Ok(made),
-            Some(error) => Err(GpuError::Failed(format!("{label}: {error}"))),
+            Some(error) => Err(GpuError::Refused(format!("{label}: {error}"))),
         }
     }
 
     /// Waits for all submitted work.
     pub fn wait(&self) -> Result<(), GpuError> {
         self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| GpuError::Failed(error.to_string()))?;
-        self.lost().map_or(Ok(()), |reason| Err(GpuError::Failed(reason)))
+        self.lost().map_or(Ok(()), Err)
     }
 }
 

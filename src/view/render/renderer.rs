@@ -185,7 +185,7 @@ impl Renderer {
         self.show(gpu, &mut encoder, view_of, sides.len(), target);
         self.timing.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
-        gpu.lost().map_or(Ok(()), |reason| Err(GpuError::Failed(reason)))
+        gpu.lost().map_or(Ok(()), Err)
     }
 
     fn draw_side(

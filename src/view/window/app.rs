@@ -236,8 +236,8 @@ impl App {
         open.interface.draw(&stage.gpu, &view, size, shapes);
         open.window.pre_present_notify();
         stage.gpu.queue.present(target);
-        if let Some(reason) = stage.gpu.lost() {
-            return Err(GpuError::Failed(reason));
+        if let Some(error) = stage.gpu.lost() {
+            return Err(error);
         }
         self.recovery.frame();
         self.drawn += 1;

@@ -78,8 +78,8 @@ impl Surface {
         if !matches!(texture, wgpu::CurrentSurfaceTexture::Success(_)) {
             // The loss of a device is told while it is polled, and a lost one has no textures.
             gpu.device.poll(wgpu::PollType::Poll).ok();
-            if let Some(reason) = gpu.lost() {
-                return Err(GpuError::Failed(reason));
+            if let Some(error) = gpu.lost() {
+                return Err(error);
             }
         }
         Ok(match texture {
