@@ -40,6 +40,8 @@ mod inputs_build;
 mod inputs_files;
 #[path = "cli/inputs_meaning.rs"]
 mod inputs_meaning;
+#[path = "cli/inputs_raster.rs"]
+mod inputs_raster;
 #[path = "cli/lobes.rs"]
 mod lobes;
 #[path = "cli/ninja.rs"]

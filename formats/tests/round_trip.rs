@@ -104,7 +104,9 @@ fn the_writer_refuses_what_a_reader_would() {
     assert!(matches!(builder.push(unknown), Err(FormatError::Resource { .. })));
     let large =
         Section { payload: vec![0; params::MAX_BYTES + 1], resource: Resource::Parameters, ..plain_section("e") };
-    assert!(matches!(builder.push(large), Err(FormatError::Resource { .. })));
+    let most = params::MAX_BYTES;
+    let found = most + 1;
+    assert_eq!(builder.push(large), Err(FormatError::ParametersTooLarge { most, found }));
 }
 
 #[test]

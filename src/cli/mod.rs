@@ -44,15 +44,7 @@ pub fn run<P: Parser>(
         output::stop_writing();
         std::process::exit(i32::from(Exit::Interrupted as u8))
     });
-    let report_panic = std::panic::take_hook();
-    std::panic::set_hook(Box::new(move |info| {
-        // A decoder's panic is caught and becomes an error that names the file.
-        if is_decoding() {
-            return;
-        }
-        report_panic(info);
-        std::process::exit(i32::from(Exit::Unexpected as u8));
-    }));
+    end_at_panics();
     let args = match response::expand(args) {
         Ok(args) => args,
         Err(failure) => return finish(Err(failure)),
@@ -65,6 +57,19 @@ pub fn run<P: Parser>(
             ExitCode::from(error.exit_code() as u8)
         }
     }
+}
+
+/// Makes a panic of any thread the end of the program, unless it is a decoder's: that one is caught, and becomes an error
+/// that names the file.
+fn end_at_panics() {
+    let report_panic = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        if is_decoding() {
+            return;
+        }
+        report_panic(info);
+        std::process::exit(i32::from(Exit::Unexpected as u8));
+    }));
 }
 
 fn finish(result: Result<(), Failure>) -> ExitCode {
@@ -82,10 +87,50 @@ fn finish(result: Result<(), Failure>) -> ExitCode {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::{InputError, guarded};
     use glint_formats::container::VERSION;
+    use rayon::prelude::*;
+    use std::path::Path;
+    use std::process::Command;
 
     #[test]
     fn the_version_names_the_pack_version() {
         assert!(LONG_VERSION.contains(&format!("writes {}.{}, reads {}.x", VERSION.0, VERSION.1, VERSION.0)));
+    }
+
+    /// Where the process that the next test starts is to panic.
+    const WHERE: &str = "GLINT_TEST_PANIC";
+
+    /// Does nothing where it is not told to panic.
+    #[test]
+    fn panics_where_it_is_told() {
+        let Ok(place) = std::env::var(WHERE) else { return };
+        end_at_panics();
+        match place.as_str() {
+            "here" => panic!("a fault"),
+            "rayon" => (0..64).into_par_iter().for_each(|k| assert!(k != 40, "a fault")),
+            "elsewhere while this thread decodes" => {
+                let fault = || std::thread::spawn(|| assert!(std::hint::black_box(false), "a fault")).join().is_ok();
+                let _ = guarded(Path::new("a.png"), || Ok::<_, InputError>(fault()));
+            }
+            _ => {
+                let failure = guarded(Path::new("a.png"), || -> Result<(), Failure> { panic!("a fault") }).unwrap_err();
+                eprintln!("{}", failure.message);
+                std::process::exit(i32::from(failure.exit as u8));
+            }
+        }
+    }
+
+    #[test]
+    fn a_panic_ends_the_program_unless_it_is_a_decoders() {
+        for (place, code) in [("here", 1), ("rayon", 1), ("elsewhere while this thread decodes", 1), ("decoder", 4)] {
+            let mut child = Command::new(std::env::current_exe().unwrap());
+            child.args(["--exact", "cli::tests::panics_where_it_is_told", "--nocapture"]).env(WHERE, place);
+            let output = child.output().unwrap();
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert_eq!(output.status.code(), Some(code), "{place}: {said}");
+            assert_eq!(said.contains("panicked"), code == 1, "{place}: {said}");
+            assert!(said.contains("a fault"), "{place}: {said}");
+        }
     }
 }

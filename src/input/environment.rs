@@ -4,6 +4,7 @@
 
 use super::error::InputError;
 use super::exr_file;
+use super::format::no_environment;
 use super::guard::guarded;
 use super::limits::{check_size, digest, from_bake, read};
 use super::options::InputOptions;
@@ -56,10 +57,7 @@ fn decode(
     } else if bytes.starts_with(b"#?") {
         decode_hdr(path, bytes, options, warnings)
     } else {
-        Err(InputError::unsupported(
-            path,
-            "expected linear radiance as Radiance HDR or OpenEXR; images of other formats have no range for lights",
-        ))
+        Err(no_environment(path, bytes))
     }
 }
 

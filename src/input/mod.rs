@@ -1,9 +1,11 @@
 //! Files that are read: normal maps, environments, and maps that are made by formula.
 
+mod chunks;
 mod colour_tag;
 pub mod environment;
 mod error;
 mod exr_file;
+mod foreign;
 mod format;
 mod guard;
 mod icc;
@@ -11,10 +13,12 @@ mod limits;
 mod meaning;
 mod normal_map;
 mod options;
+mod orientation;
 mod pixels;
 mod primaries;
 mod raster;
 pub mod synthetic;
+mod tiff_file;
 mod transfer;
 
 pub use error::InputError;

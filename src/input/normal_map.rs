@@ -13,9 +13,10 @@ use super::guard::guarded;
 use super::limits::{digest, from_bake, read};
 use super::options::{Channels, Crop, InputOptions};
 use super::pixels::Pixels;
-use super::{exr_file, meaning, raster};
+use super::{exr_file, meaning, raster, tiff_file};
 use glint_bake_core::normal_map::{GreenAxis, NormalMap, NormalOptions, NormalReport};
 use glint_formats::provenance::InputDigest;
+use image::ImageFormat;
 use std::path::Path;
 
 /// Mean normals that lean further than this (degrees) are worth a warning: real maps stay below 13.
@@ -44,7 +45,14 @@ pub struct LoadedMap {
 pub fn load_normal_map(path: &Path, options: &InputOptions) -> Result<LoadedMap, InputError> {
     let bytes = read(path, options.max_memory)?;
     let (pixels, mut warnings) = guarded(path, || decode(path, &bytes, options))?;
+    let orientation = pixels.stored.orientation;
     let raw = meaning::raw_normals(path, pixels, options, &mut warnings)?;
+    let raw = if options.height.is_some() {
+        orientation.say_moved(&mut warnings);
+        raw
+    } else {
+        orientation.settle(raw, options, &mut warnings)
+    };
     let raw = match options.crop {
         Some(Crop { x, y, w, h }) => raw.crop(x, y, w, h).map_err(|e| from_bake(path, e))?,
         None => raw,
@@ -62,15 +70,16 @@ pub fn load_normal_map(path: &Path, options: &InputOptions) -> Result<LoadedMap,
     })
 }
 
-/// Pixels of any format, and the notes of reading them.
+/// Pixels of any format as they are shown, and the notes of reading them.
 fn decode(path: &Path, bytes: &[u8], options: &InputOptions) -> Result<(Pixels, Vec<String>), InputError> {
     let format = format::detect(path, bytes)?;
     let mut notes: Vec<String> = format::extension_note(path, format).into_iter().collect();
     let pixels = match format {
         Format::Exr => exr_file::decode(path, bytes, options)?,
+        Format::Raster(ImageFormat::Tiff) => tiff_file::decode(path, bytes, options, &mut notes)?,
         Format::Raster(raster) => raster::decode(path, bytes, raster, options, &mut notes)?,
     };
-    Ok((pixels, notes))
+    Ok((pixels.shown(), notes))
 }
 
 /// What the measurements tell that the user should know.

@@ -1,19 +1,21 @@
-//! PNG, JPEG, TGA, TIFF and WebP through the image crate: limits and tags first, then the pixels.
+//! PNG, JPEG, TGA and WebP through the image crate: limits and tags first, then the pixels; TIFF has a file of its own.
 
 use std::io::Cursor;
 use std::path::Path;
 
 use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
+use super::chunks::{self, Jpeg};
 use super::colour_tag::ColourTag;
 use super::error::InputError;
 use super::limits::check_size;
 use super::options::InputOptions;
+use super::orientation::Orientation;
 use super::pixels::{Pixels, Stored, Values};
 
 /// Bytes of decoded pixels that one byte of file can stand for: deflate reaches 1032, LZW 2730, TGA runs 128. A file
 /// that promises more is cut off, and need not be allocated for.
-const MAX_EXPANSION: u64 = 4096;
+pub(super) const MAX_EXPANSION: u64 = 4096;
 
 /// Decodes a file whose content was found to be `format`.
 pub(super) fn decode(
@@ -34,21 +36,26 @@ pub(super) fn decode(
     let colour = decoder.color_type();
     check_size(path, (width as u64, height as u64), colour.bytes_per_pixel() as u64, options.max_memory)?;
     check_not_cut_off(path, bytes, format, decoder.total_bytes())?;
-    // Colour type 3 of the IHDR chunk.
-    if format == ImageFormat::Png && bytes.get(25) == Some(&3) {
-        notes.push("a palette image: at most 256 different normals".into());
-    }
+    notes.extend(what_else(bytes, format).map(str::to_owned));
     let stored = Stored {
-        bits: bits(decoder.original_color_type()),
-        lossy: (format == ImageFormat::Jpeg).then_some("JPEG"),
+        bits: bits(bytes, format, decoder.original_color_type()),
+        lossy: lossy(bytes, format),
         tag: tag(bytes, format, &mut decoder),
+        orientation: orientation(bytes, format, &mut decoder),
     };
 
     let image = DynamicImage::from_decoder(decoder).map_err(|e| from_image(path, e))?;
-    Ok(Pixels { width, height, values: values(path, image)?, stored })
+    let values = match values(path, image)? {
+        // The fourth byte of such a texel is padding.
+        Values::Rgba(v) if format == ImageFormat::Tga && !tga_has_alpha(bytes) => {
+            Values::Rgb(v.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
+        }
+        values => values,
+    };
+    Ok(Pixels { width, height, values, stored })
 }
 
-/// Damage that the decoders would word badly or let pass.
+/// Damage that the decoders would word badly or let pass, and kinds that they would misread.
 fn check_header(path: &Path, bytes: &[u8], format: ImageFormat) -> Result<(), InputError> {
     let size = match format {
         // Width and height of the IHDR chunk, which must come first.
@@ -66,44 +73,81 @@ fn check_header(path: &Path, bytes: &[u8], format: ImageFormat) -> Result<(), In
         // The memory is looked at again once the pixel type is known.
         check_size(path, size, 0, u64::MAX)?;
     }
-    if format == ImageFormat::Jpeg && !jpeg_has_end(bytes) {
-        return Err(cut_off(path));
-    }
-    Ok(())
+    if format == ImageFormat::Jpeg { check_jpeg(path, bytes) } else { Ok(()) }
 }
 
-/// Whether the end marker follows the first scan; the decoder would fill the missing rest with grey.
-fn jpeg_has_end(bytes: &[u8]) -> bool {
-    const SOS: u8 = 0xda;
-    let mut at = 2;
-    while at + 4 <= bytes.len() {
-        if bytes[at] != 0xff {
-            return true; // Not a marker: let the decoder say what is wrong.
-        }
-        if bytes[at + 1] == 0xff {
-            at += 1; // Fill byte.
-            continue;
-        }
-        let length = u16::from_be_bytes([bytes[at + 2], bytes[at + 3]]) as usize;
-        if bytes[at + 1] == SOS {
-            return bytes[at..].windows(2).any(|w| w == [0xff, 0xd9]);
-        }
-        at += 2 + length;
+fn check_jpeg(path: &Path, bytes: &[u8]) -> Result<(), InputError> {
+    let jpeg = Jpeg::of(bytes);
+    let kind = match jpeg.frame.map(|frame| (frame.kind, frame.bits, frame.channels)) {
+        Some((0xf7, _, _)) => "a JPEG-LS".to_owned(),
+        Some((0xc3 | 0xc7 | 0xcb | 0xcf, _, _)) => "a lossless JPEG".to_owned(),
+        Some((0xc9..=0xcf, _, _)) => "a JPEG with arithmetic coding".to_owned(),
+        Some((0xc5..=0xc7, _, _)) => "a hierarchical JPEG".to_owned(),
+        Some((_, bits, _)) if bits != 8 => format!("a JPEG of {bits} bits a channel"),
+        Some((_, _, 4)) => "a CMYK or YCCK JPEG".to_owned(),
+        _ => String::new(),
+    };
+    if !kind.is_empty() {
+        return Err(InputError::unsupported(
+            path,
+            format!("the file is {kind}, which is not read; expected 8 bits, grey or RGB: export it as PNG"),
+        ));
     }
-    false
+    if jpeg.has_end { Ok(()) } else { Err(cut_off(path)) }
 }
 
 fn check_not_cut_off(path: &Path, bytes: &[u8], format: ImageFormat, decoded: u64) -> Result<(), InputError> {
     // JPEG and WebP can say "all the same" in next to no bytes.
-    let bounded = matches!(format, ImageFormat::Png | ImageFormat::Tga | ImageFormat::Tiff);
+    let bounded = matches!(format, ImageFormat::Png | ImageFormat::Tga);
     if bounded && decoded / MAX_EXPANSION > bytes.len() as u64 {
         return Err(cut_off(path));
     }
     Ok(())
 }
 
-fn cut_off(path: &Path) -> InputError {
+pub(super) fn cut_off(path: &Path) -> InputError {
     InputError::bad(path, "the file is cut off: it ends before the image does; copy or export it again")
+}
+
+/// What there is to be said of the file besides its pixels.
+fn what_else(bytes: &[u8], format: ImageFormat) -> impl Iterator<Item = &'static str> {
+    // Colour type 3 of the IHDR chunk.
+    let palette = format == ImageFormat::Png && bytes.get(25) == Some(&3);
+    let animated = match format {
+        ImageFormat::Png => chunks::png(bytes).any(|(kind, _)| &kind == b"acTL"),
+        ImageFormat::WebP => chunks::webp(bytes).any(|(kind, _)| &kind == b"ANMF"),
+        _ => false,
+    };
+    let palette = palette.then_some("a palette image: at most 256 different normals");
+    let animated = animated.then_some("an animation; its first picture is read");
+    palette.into_iter().chain(animated)
+}
+
+/// The codec that lost precision.
+fn lossy(bytes: &[u8], format: ImageFormat) -> Option<&'static str> {
+    // A frame of an animation holds chunks of its own after 16 bytes.
+    let in_frame = |content: &[u8]| content.get(16..).is_some_and(|frame| frame.windows(4).any(|w| w == b"VP8 "));
+    let is_vp8 = |(kind, content): ([u8; 4], &[u8])| &kind == b"VP8 " || (&kind == b"ANMF" && in_frame(content));
+    match format {
+        ImageFormat::Jpeg => Some("JPEG"),
+        ImageFormat::WebP if chunks::webp(bytes).any(is_vp8) => Some("lossy WebP"),
+        _ => None,
+    }
+}
+
+/// What EXIF says of the rows and columns.
+fn orientation(bytes: &[u8], format: ImageFormat, decoder: &mut impl ImageDecoder) -> Orientation {
+    // In PNG it may come after the pixels, where the decoder has not been yet.
+    let exif = match format {
+        ImageFormat::Png => chunks::png(bytes).find(|(kind, _)| kind == b"eXIf").map(|(_, content)| content.to_vec()),
+        // EXIF that cannot be read says nothing.
+        _ => decoder.exif_metadata().ok().flatten(),
+    };
+    let exif = exif.unwrap_or_default();
+    // Some writers leave JPEG's introduction in.
+    let exif = exif.strip_prefix(b"Exif\0\0").unwrap_or(&exif);
+    let tag = image::metadata::Orientation::from_exif_chunk(exif).map(|orientation| orientation.to_exif());
+    Orientation::of_tag(tag.unwrap_or(1).into())
 }
 
 /// What the file says of its colours.
@@ -116,11 +160,32 @@ fn tag(bytes: &[u8], format: ImageFormat, decoder: &mut impl ImageDecoder) -> Co
 }
 
 /// Bits of a whole number; `None` for floats.
-fn bits(stored: ExtendedColorType) -> Option<u8> {
-    match stored {
-        ExtendedColorType::Rgb32F | ExtendedColorType::Rgba32F => None,
+fn bits(bytes: &[u8], format: ImageFormat, stored: ExtendedColorType) -> Option<u8> {
+    match (format, stored) {
+        (_, ExtendedColorType::Rgb32F | ExtendedColorType::Rgba32F) => None,
+        // The decoder widens grey of 1, 2 and 4 bits to 8, without a word. Palettes hold 8 bits whatever their indices have.
+        (ImageFormat::Png, _) => bytes.get(24).map(|&depth| if bytes.get(25) == Some(&3) { 8 } else { depth }),
+        (_, ExtendedColorType::Rgb5x1) => Some(5),
         _ => Some((stored.bits_per_pixel() / u16::from(stored.channel_count())) as u8),
     }
+}
+
+/// Whether the fourth channel of a TGA is alpha: the header has bits for it, and the extension area, where there is one, does
+/// not call them undefined.
+fn tga_has_alpha(bytes: &[u8]) -> bool {
+    const FOOTER: usize = 26;
+    /// Where the kind of alpha is in the extension area.
+    const KIND: usize = 494;
+    if bytes.get(17).is_none_or(|descriptor| descriptor & 0x0f == 0) {
+        return false;
+    }
+    let kind = || {
+        let footer = bytes.get(bytes.len().checked_sub(FOOTER)?..)?;
+        let area = u32::from_le_bytes(*footer.first_chunk()?) as usize;
+        let known = footer.ends_with(b"TRUEVISION-XFILE.\0") && area != 0;
+        known.then(|| bytes.get(area.checked_add(KIND)?).copied()).flatten()
+    };
+    kind().is_none_or(|kind| kind >= 3)
 }
 
 /// Channels as floats.
@@ -136,12 +201,10 @@ fn values(path: &Path, image: DynamicImage) -> Result<Values, InputError> {
         DynamicImage::ImageRgba8(i) => Values::Rgba(i.pixels().map(|p| p.0.map(unorm8)).collect()),
         DynamicImage::ImageRgb16(i) => Values::Rgb(i.pixels().map(|p| p.0.map(unorm16)).collect()),
         DynamicImage::ImageRgba16(i) => Values::Rgba(i.pixels().map(|p| p.0.map(unorm16)).collect()),
-        DynamicImage::ImageRgb32F(i) => Values::Rgb(i.pixels().map(|p| p.0).collect()),
-        DynamicImage::ImageRgba32F(i) => Values::Rgba(i.pixels().map(|p| p.0).collect()),
         other => {
             return Err(InputError::unsupported(
                 path,
-                format!("pixels of type {:?} are not read; expected 8 or 16 bits or float, grey or RGB", other.color()),
+                format!("pixels of type {:?} are not read; expected 8 or 16 bits, grey or RGB", other.color()),
             ));
         }
     })
