@@ -57,7 +57,7 @@ mod tests {
         for error in [
             fails(|| bytes[std::hint::black_box(7)]),
             fails(|| panic!("text")),
-            fails(|| None.expect("an\n option")),
+            fails(|| std::hint::black_box(None).expect("an\n option")),
             fails(|| std::panic::resume_unwind(Box::new(3))),
         ] {
             assert_eq!(error.exit_code(), 4);
