@@ -28,6 +28,8 @@ mod environment;
 mod examples;
 #[path = "cli/export.rs"]
 mod export;
+#[path = "real_maps/folder.rs"]
+mod folder;
 #[path = "cli/generate.rs"]
 mod generate;
 #[path = "cli/info.rs"]
@@ -36,6 +38,11 @@ mod info;
 mod inputs_build;
 #[path = "cli/inputs_files.rs"]
 mod inputs_files;
+#[path = "cli/inputs_meaning.rs"]
+mod inputs_meaning;
+#[cfg(feature = "view")]
+#[path = "cli/inputs_mesh.rs"]
+mod inputs_mesh;
 #[path = "cli/inputs_raster.rs"]
 mod inputs_raster;
 #[path = "cli/lobes.rs"]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use exr::prelude::{Image, SpecificChannels, WritableImage};
 use glint_bake::input::synthetic::leather;
-use glint_bake::input::{Channels, Crop, InputError, InputOptions, LoadedMap, load_normal_map};
+use glint_bake::input::{Channels, ColourSpace, Crop, InputError, InputOptions, LoadedMap, load_normal_map};
 use glint_bake_core::normal_map::GreenAxis;
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgb, RgbImage};
 use tempfile::TempDir;
@@ -198,21 +198,25 @@ fn memory_is_limited() {
 }
 
 #[test]
-fn srgb_tags_are_refused_or_overridden() {
+fn tags_that_the_data_contradict_are_noted_and_can_be_overridden() {
     let files = Files::new();
-    let chunks: [(&str, &[u8; 4], &[u8]); 2] = [("srgb.png", b"sRGB", &[0]), ("cicp.png", b"cICP", &[1, 13, 0, 1])];
+    let plain = files.load("plain.png", sound_png()).unwrap().map;
+    let chunks: [(&str, &[u8; 4], &[u8]); 3] = [
+        ("srgb.png", b"sRGB", &[0]),
+        ("cicp.png", b"cICP", &[1, 13, 0, 1]),
+        ("gama.png", b"gAMA", &[0, 0, 0xb1, 0x8f]),
+    ];
     for (name, kind, content) in chunks {
-        let bytes = png_with_chunk(kind, content);
-        files.refuse(name, &bytes, 4, &["sRGB", "--assume-linear"]);
-        let options = InputOptions { assume_linear: true, ..Default::default() };
+        let loaded = files.load(name, png_with_chunk(kind, content)).unwrap();
+        assert!(loaded.warnings.iter().any(|w| w.contains("not encoded")), "{:?}", loaded.warnings);
+        assert_eq!(loaded.map, plain);
+        let options = InputOptions { colour_space: ColourSpace::Linear, ..Default::default() };
         let loaded = load_normal_map(&files.path(name), &options).unwrap();
         assert!(loaded.warnings.iter().any(|w| w.contains("as asked")), "{:?}", loaded.warnings);
-        assert_eq!(loaded.map, files.load("plain.png", sound_png()).unwrap().map);
+        assert_eq!(loaded.map, plain);
     }
-    let gama = files.load("gama.png", png_with_chunk(b"gAMA", &45455u32.to_be_bytes())).unwrap();
-    assert!(gama.warnings.iter().any(|w| w.contains("gAMA")), "{:?}", gama.warnings);
-    files.refuse("profile.jpg", jpeg_with_profile(b"...desc...sRGB IEC61966-2.1..."), 4, &["sRGB", "--assume-linear"]);
-    files.load("linear.jpg", jpeg_with_profile(b"...desc...Linear...")).unwrap();
+    let odd = files.load("profile.jpg", jpeg_with_profile(b"...desc...sRGB IEC61966-2.1...")).unwrap();
+    assert!(odd.warnings.iter().any(|w| w.contains("cannot be read")), "{:?}", odd.warnings);
 }
 
 /// A JPEG with a colour profile in an APP2 segment.
@@ -237,11 +241,16 @@ fn pictures_that_are_no_normal_map() {
     refused(load_normal_map(&path, &InputOptions::default()), 4, "black.exr", &["not a normal map"]);
 }
 
+fn unit(v: [f32; 3]) -> [f32; 3] {
+    let length = v.iter().map(|c| c * c).sum::<f32>().sqrt();
+    v.map(|c| c / length)
+}
+
 #[test]
 fn exr_channels_and_ranges() {
     let files = Files::new();
     let default = InputOptions::default();
-    let wave = |x: usize, y: usize| [0.3 * (x as f32 - 7.5) / 8.0, 0.2 * (y as f32 - 7.5) / 8.0, 0.9];
+    let wave = |x: usize, y: usize| unit([0.3 * (x as f32 - 7.5) / 8.0, 0.2 * (y as f32 - 7.5) / 8.0, 0.9]);
     let signed = load_normal_map(&exr(&files, "xyz.exr", ["X", "Y", "Z"], wave), &default).unwrap();
     assert!(signed.warnings.iter().any(|w| w.contains("−1…1")), "{:?}", signed.warnings);
     let unsigned = |x: usize, y: usize| wave(x, y).map(|c| 0.5 * c + 0.5);
@@ -305,7 +314,7 @@ fn a_bump_looks_the_same_as_heights_and_as_normals_of_either_convention() {
     let up = files.load("up.png", encoded(normals, ImageFormat::Png)).unwrap();
     let options = InputOptions { y: GreenAxis::Down, ..Default::default() };
     let down = load_normal_map(&files.write("down.png", encoded(flipped, ImageFormat::Png)), &options).unwrap();
-    let two = InputOptions { channels: Channels::Xy, ..Default::default() };
+    let two = InputOptions { channels: Some(Channels::Xy), ..Default::default() };
     let two = load_normal_map(&files.path("up.png"), &two).unwrap();
     for other in [&up, &down, &two] {
         let step = |(a, b): (&[f32; 2], &[f32; 2])| (a[0] - b[0]).hypot(a[1] - b[1]);

@@ -6,11 +6,11 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
-use glint_bake::input::{InputError, InputOptions, LoadedMap, load_normal_map};
+use glint_bake::input::{ColourSpace, InputOptions, LoadedMap, load_normal_map};
 use glint_bake_core::normal_map::{GreenAxis, NormalMap, NormalOptions, NormalReport, RawNormals};
 use glint_formats::Wrap;
 
-/// Files that carry an sRGB tag and so need the override.
+/// Files that carry an sRGB tag, though their values are linear.
 const TAGGED_SRGB: [&str; 2] = ["ground037_ambientcg_rgba_roughness.png", "leather_008_3dtextures_16bit.png"];
 
 /// Files that do not tile, by eye and by how they were made (crops, and photographs that were cut).
@@ -64,7 +64,7 @@ fn catalogue(kind: &str) -> Vec<Row> {
 }
 
 fn options() -> InputOptions {
-    InputOptions { assume_linear: true, ..InputOptions::default() }
+    InputOptions { colour_space: ColourSpace::Linear, ..InputOptions::default() }
 }
 
 /// All full-size normal maps, loaded once: decoding is slow in a debug build.
@@ -163,17 +163,18 @@ fn seams_are_seen_where_they_are() {
 }
 
 #[test]
-fn tagged_files_need_the_override_and_only_they() {
+fn real_maps_are_taken_as_they_are_and_tags_noted() {
     for kind in ["normal", "tiny", "height"] {
         for row in catalogue(kind) {
             let height = (kind == "height").then_some(4.0);
-            let result = load_normal_map(&row.path(), &InputOptions { height, ..InputOptions::default() });
-            let tagged = TAGGED_SRGB.iter().any(|name| row.text("path").ends_with(name));
-            match result {
-                Err(InputError::Bad { what, .. }) if tagged => assert!(what.contains("--assume-linear"), "{what}"),
-                Err(error) => panic!("{error}"),
-                Ok(_) => assert!(!tagged, "{}", row.text("path")),
-            }
+            let loaded = load_normal_map(&row.path(), &InputOptions { height, ..InputOptions::default() }).unwrap();
+            let linear = load_normal_map(&row.path(), &InputOptions { height, ..options() }).unwrap();
+            let name = row.text("path");
+            assert_eq!(loaded.map, linear.map, "{name}");
+            let tagged = TAGGED_SRGB.iter().any(|tagged| name.ends_with(tagged));
+            let noted = loaded.warnings.iter().any(|w| w.contains("carries an sRGB chunk"));
+            assert_eq!(noted, tagged, "{name}: {:?}", loaded.warnings);
+            assert!(!loaded.warnings.iter().any(|w| w.contains("look encoded")), "{name}: {:?}", loaded.warnings);
         }
     }
 }

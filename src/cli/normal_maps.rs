@@ -3,7 +3,7 @@
 use super::option_list::OptionList;
 use super::values;
 use crate::exit::Failure;
-use crate::input::{Channels, Crop, InputOptions};
+use crate::input::{Channels, ColourSpace, Crop, InputOptions};
 use crate::reading;
 use clap::ValueEnum;
 use glint_bake_core::normal_map::GreenAxis;
@@ -24,14 +24,19 @@ pub struct InputFlags {
     /// What lies beyond a map's edge
     #[arg(long, value_name = "WRAP", default_value = "repeat", help_heading = "Input")]
     pub wrap: WrapArg,
-    /// Channels that hold the normal; xy computes z
-    #[arg(long, value_name = "CHANNELS", default_value = "xyz", help_heading = "Input")]
-    pub channels: ChannelsArg,
+    /// Channels that hold the normal: xyz, or those of x and y, of which z is computed [default: xyz where the data agree]
+    ///
+    /// Without it, maps of two channels and object-space maps are recognised and refused; given, the map is not doubted.
+    #[arg(long, value_name = "CHANNELS", help_heading = "Input")]
+    pub channels: Option<ChannelsArg>,
     /// Read height maps; SCALE is the height of white in texels
     #[arg(long, value_name = "SCALE", value_parser = values::non_zero, allow_negative_numbers = true, help_heading = "Input")]
     pub height: Option<f32>,
-    /// Take the values of files tagged as sRGB as they are
-    #[arg(long, help_heading = "Input")]
+    /// How stored values are decoded: as the data and the file's tag say, not at all, or by the sRGB curve
+    #[arg(long, value_name = "SPACE", default_value = "auto", help_heading = "Input")]
+    pub colour_space: ColourSpaceArg,
+    /// The same as --colour-space linear
+    #[arg(long, conflicts_with = "colour_space", help_heading = "Input")]
     pub assume_linear: bool,
 }
 
@@ -56,7 +61,27 @@ pub enum WrapArg {
 #[allow(missing_docs)] // The flag's help says it.
 pub enum ChannelsArg {
     Xyz,
+    #[value(alias = "rg")]
     Xy,
+    #[value(alias = "gr")]
+    Yx,
+    #[value(alias = "wy")]
+    Ag,
+    #[value(alias = "yw")]
+    Ga,
+    #[value(alias = "xw")]
+    Ra,
+    #[value(alias = "wx")]
+    Ar,
+}
+
+/// How stored values are decoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[allow(missing_docs)] // The flag's help says it.
+pub enum ColourSpaceArg {
+    Auto,
+    Linear,
+    Srgb,
 }
 
 impl From<NormalY> for GreenAxis {
@@ -82,6 +107,23 @@ impl From<ChannelsArg> for Channels {
         match channels {
             ChannelsArg::Xyz => Channels::Xyz,
             ChannelsArg::Xy => Channels::Xy,
+            ChannelsArg::Yx => Channels::Yx,
+            ChannelsArg::Ag => Channels::Ag,
+            ChannelsArg::Ga => Channels::Ga,
+            ChannelsArg::Ra => Channels::Ra,
+            ChannelsArg::Ar => Channels::Ar,
+        }
+    }
+}
+
+impl ColourSpaceArg {
+    /// The same for the reader; `--assume-linear` is another name of `linear`.
+    pub fn or_linear(self, assume_linear: bool) -> ColourSpace {
+        match self {
+            _ if assume_linear => ColourSpace::Linear,
+            ColourSpaceArg::Auto => ColourSpace::Auto,
+            ColourSpaceArg::Linear => ColourSpace::Linear,
+            ColourSpaceArg::Srgb => ColourSpace::Srgb,
         }
     }
 }
@@ -92,10 +134,10 @@ impl InputFlags {
         InputOptions {
             y: self.normal_y.into(),
             wrap: self.wrap.into(),
-            channels: self.channels.into(),
+            channels: self.channels.map(Channels::from),
             height: self.height,
             crop: self.crop,
-            assume_linear: self.assume_linear,
+            colour_space: self.colour_space.or_linear(self.assume_linear),
             max_memory,
         }
     }
@@ -105,15 +147,17 @@ impl InputFlags {
         let mut options = OptionList::default();
         options.push_choice("normal-y", &self.normal_y);
         options.push_choice("wrap", &self.wrap);
-        options.push_choice("channels", &self.channels);
+        options.push_choice("channels", &self.channels.unwrap_or(ChannelsArg::Xyz));
         if let Some(crop) = self.crop {
             options.push("crop", values::crop_text(crop));
         }
         if let Some(scale) = self.height {
             options.push("height", scale);
         }
-        if self.assume_linear {
-            options.push("assume-linear", true);
+        match self.colour_space.or_linear(self.assume_linear) {
+            ColourSpace::Auto => {}
+            ColourSpace::Linear => options.push_choice("colour-space", &ColourSpaceArg::Linear),
+            ColourSpace::Srgb => options.push_choice("colour-space", &ColourSpaceArg::Srgb),
         }
         options
     }

@@ -1,5 +1,6 @@
 //! `glint-bake report`: speed against error of every method, as tables and plots.
 
+use crate::cli::normal_maps::ColourSpaceArg;
 use crate::cli::{Terminal, values};
 use crate::exit::{Exit, Failure};
 use crate::input::{Crop, InputOptions};
@@ -48,8 +49,11 @@ pub struct Args {
     /// Part of each of --maps to use
     #[arg(long, value_name = "WxH+X+Y", value_parser = values::crop, requires = "maps", help_heading = "Scale")]
     pub crop: Option<Crop>,
-    /// Take the values of --maps that are tagged as sRGB as they are
-    #[arg(long, requires = "maps", help_heading = "Scale")]
+    /// How the stored values of --maps are decoded: as the data and the file's tag say, not at all, or by the sRGB curve
+    #[arg(long, value_name = "SPACE", default_value = "auto", requires = "maps", help_heading = "Scale")]
+    pub colour_space: ColourSpaceArg,
+    /// The same as --colour-space linear
+    #[arg(long, requires = "maps", conflicts_with = "colour_space", help_heading = "Scale")]
     pub assume_linear: bool,
     /// Random footprints of each size, of ndf-maps, lobes and surface [default: by report]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096), help_heading = "Scale")]
@@ -112,7 +116,11 @@ fn settings(args: &Args, terminal: Terminal) -> Settings {
         quick: args.quick,
         footprints: args.footprints,
         maps: args.maps.clone(),
-        input: InputOptions { crop: args.crop, assume_linear: args.assume_linear, ..InputOptions::default() },
+        input: InputOptions {
+            crop: args.crop,
+            colour_space: args.colour_space.or_linear(args.assume_linear),
+            ..InputOptions::default()
+        },
         frames: args.frames,
         size: args.size,
         adapter: args.adapter.clone(),

@@ -1,72 +1,72 @@
-//! Does a file claim to be sRGB? Normals are linear; the claim is refused unless the user overrides it.
+//! What a file claims of its colours: the curve that its values were encoded with. A claim, no more: most normal maps
+//! that say sRGB hold linear data, so `meaning` asks the data.
 //!
-//! Tags looked at: PNG's sRGB and cICP chunks, and the embedded colour profile of any format. PNG's gAMA chunk alone is
-//! written by habit and merely noted; other profiles likewise.
+//! Of a PNG's chunks the first of cICP, iCCP, sRGB and gAMA counts (PNG, third edition, 4.3); of other formats the
+//! embedded profile.
 
+use super::icc;
+use super::transfer::Transfer;
 use std::io::Cursor;
-use std::path::Path;
 
-use super::error::InputError;
-use super::options::InputOptions;
-
-/// cICP's code for the sRGB transfer function.
-const CICP_TRANSFER_SRGB: u8 = 13;
-
-/// gAMA of a linear file; chunks hold the exponent times 100 000.
-const GAMA_LINEAR: u32 = 100_000;
-
-/// What a file says of its colours.
+/// What a file claims; None where it claims nothing.
 #[derive(Clone, Default)]
-pub(super) struct ColourTag {
-    /// The tag that says sRGB.
-    srgb: Option<&'static str>,
-    /// What else it says.
-    note: Option<String>,
+pub(super) struct ColourTag(pub Option<Claim>);
+
+/// A claim and where it stands.
+#[derive(Clone)]
+pub(super) struct Claim {
+    /// The tag, such as "an sRGB chunk".
+    pub tag: String,
+    /// The curve it names.
+    pub transfer: Transfer,
 }
 
 impl ColourTag {
-    /// What a colour profile says; profiles name themselves in ASCII or, in version 4, in UTF-16.
-    pub fn of_profile(profile: &[u8]) -> ColourTag {
-        let contains = |needle: &[u8]| profile.windows(needle.len()).any(|window| window == needle);
-        if contains(b"sRGB") || contains(b"\0s\0R\0G\0B") {
-            return ColourTag { srgb: Some("an sRGB colour profile"), note: None };
-        }
-        ColourTag { srgb: None, note: Some("carries a colour profile; ignored, the values are taken as linear".into()) }
+    fn claim(tag: impl Into<String>, transfer: Transfer) -> ColourTag {
+        ColourTag(Some(Claim { tag: tag.into(), transfer }))
     }
 
-    /// What the chunks of a PNG say, apart from a profile. A file that cannot be parsed says nothing here: decoding it
-    /// will report why.
-    pub fn of_png_chunks(bytes: &[u8]) -> ColourTag {
+    /// What a colour profile says.
+    pub fn of_profile(profile: &[u8]) -> ColourTag {
+        let transfer = icc::transfer(profile);
+        let tag = match transfer {
+            Transfer::Linear => "a linear colour profile",
+            Transfer::Srgb => "a colour profile with the curve of sRGB",
+            Transfer::Unknown => "a colour profile whose curve cannot be read",
+            Transfer::Power(_) | Transfer::Table(_) => "a colour profile with a curve of its own",
+        };
+        ColourTag::claim(tag, transfer)
+    }
+
+    /// What the chunks of a PNG say. A file that cannot be parsed says nothing here: decoding it will report why.
+    pub fn of_png(bytes: &[u8]) -> ColourTag {
         let Ok(reader) = png::Decoder::new(Cursor::new(bytes)).read_info() else { return ColourTag::default() };
         let info = reader.info();
+        if let Some(code) = info.coding_independent_code_points {
+            let number = code.transfer_function;
+            let name = match number {
+                8 => "linear",
+                13 => "sRGB",
+                16 => "PQ",
+                18 => "HLG",
+                _ => "another curve",
+            };
+            return ColourTag::claim(format!("a cICP chunk that says {name} ({number})"), Transfer::of_h273(number));
+        }
+        if let Some(profile) = &info.icc_profile {
+            return ColourTag::of_profile(profile);
+        }
         if info.srgb.is_some() {
-            return ColourTag { srgb: Some("an sRGB chunk"), note: None };
+            return ColourTag::claim("an sRGB chunk", Transfer::Srgb);
         }
-        if info.coding_independent_code_points.is_some_and(|c| c.transfer_function == CICP_TRANSFER_SRGB) {
-            return ColourTag { srgb: Some("a cICP chunk that says sRGB"), note: None };
-        }
-        let gama = info.gama_chunk.map(|g| g.into_scaled()).filter(|&g| g != GAMA_LINEAR);
-        let note = gama.map(|g| format!("carries a gAMA chunk of {g}; ignored, the values are taken as linear"));
-        ColourTag { srgb: None, note }
-    }
-
-    /// Refuses sRGB unless `assume_linear`; adds what is to be noted.
-    pub fn check(self, path: &Path, options: &InputOptions, notes: &mut Vec<String>) -> Result<(), InputError> {
-        notes.extend(self.note);
-        match self.srgb {
-            Some(tag) if !options.assume_linear => Err(InputError::bad(
-                path,
-                format!(
-                    "the file carries {tag}, so its values claim to be gamma-encoded colours; expected linear data. If \
-                     it holds plain normals or heights (most tagged ones do), give --assume-linear; else export it \
-                     as non-colour data"
-                ),
-            )),
-            Some(tag) => {
-                notes.push(format!("carries {tag}; the values are taken as linear, as asked"));
-                Ok(())
+        // Such a chunk holds the exponent of encoding.
+        match info.gama_chunk.map(|gamma| gamma.into_value()) {
+            Some(exponent) if exponent > 0.0 => {
+                let transfer =
+                    if (exponent - 1.0).abs() < 0.01 { Transfer::Linear } else { Transfer::Power(1.0 / exponent) };
+                ColourTag::claim(format!("a gAMA chunk of {exponent}"), transfer)
             }
-            None => Ok(()),
+            _ => ColourTag::default(),
         }
     }
 }

@@ -26,7 +26,7 @@ pub(super) fn decode(
     let values = if options.height.is_some() {
         Values::Grey(one_channel(path, channels)?)
     } else {
-        Values::Rgb(three_channels(path, channels, options.channels)?)
+        Values::Rgb(three_channels(path, channels, options.channels.unwrap_or_default())?)
     };
     Ok(Pixels { width, height, values, stored: Stored::default() })
 }
@@ -127,7 +127,7 @@ fn three_channels(
             .zip(z.sample_data.values_as_f32())
             .map(|((x, y), z)| [x, y, z])
             .collect()),
-        (Some((x, y, _)), Channels::Xy) => {
+        (Some((x, y, _)), Channels::Xy | Channels::Yx) => {
             Ok(x.sample_data.values_as_f32().zip(y.sample_data.values_as_f32()).map(|(x, y)| [x, y, 0.0]).collect())
         }
         _ => Err(InputError::bad(

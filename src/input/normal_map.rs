@@ -4,8 +4,8 @@
 //! - 8- and 16-bit values decode as a GPU reads UNORM: v / (2ᵇ − 1), then n = 2x − 1. So (128, 128, 255), which painting
 //!   programs mean as flat, leans by 0.0039; that is what a renderer sees, and so what is baked.
 //! - Float values are 0…1 or −1…1; which of them is told from the data and noted.
-//! - Normals are linear data. A file tagged as sRGB is refused, since its maker may or may not have encoded it;
-//!   `assume_linear` says that the values are to be taken as they are. JPEG without a profile carries no tag.
+//! - Normals are linear data, whatever a file's colour tag says: tags are believed only where the data bear them out
+//!   (`meaning`).
 
 use super::error::InputError;
 use super::format::{self, Format};
@@ -134,8 +134,8 @@ fn convention(options: &InputOptions) -> String {
         GreenAxis::Up => "+Y up (OpenGL)",
         GreenAxis::Down => "+Y down (DirectX)",
     };
-    match options.channels {
-        Channels::Xyz => y.to_owned(),
-        Channels::Xy => format!("{y}, two channels"),
+    match options.channels.and_then(Channels::two) {
+        None => y.to_owned(),
+        Some(_) => format!("{y}, two channels"),
     }
 }

@@ -6,13 +6,51 @@ use glint_formats::Wrap;
 /// Default of [`InputOptions::max_memory`]: 4 GiB.
 pub const DEFAULT_MAX_MEMORY: u64 = 4 << 30;
 
-/// Which channels hold the normal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Which channels hold the normal. Of two letters the first says where x is; z is then √(1 − x² − y²).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Channels {
     /// x, y, z in red, green, blue.
+    #[default]
     Xyz,
-    /// x, y in red, green; z is √(1 − x² − y²) (BC5 style).
+    /// x in red, y in green (BC5).
     Xy,
+    /// x in green, y in red.
+    Yx,
+    /// x in alpha, y in green (DXT5nm).
+    Ag,
+    /// x in green, y in alpha.
+    Ga,
+    /// x in red or grey, y in alpha (RRRG of Basis and KTX2).
+    Ra,
+    /// x in alpha, y in red or grey.
+    Ar,
+}
+
+impl Channels {
+    /// Columns of a texel (red, green, blue, alpha) that hold x and y, where z is computed.
+    pub(super) fn two(self) -> Option<[usize; 2]> {
+        match self {
+            Channels::Xyz => None,
+            Channels::Xy => Some([0, 1]),
+            Channels::Yx => Some([1, 0]),
+            Channels::Ag => Some([3, 1]),
+            Channels::Ga => Some([1, 3]),
+            Channels::Ra => Some([0, 3]),
+            Channels::Ar => Some([3, 0]),
+        }
+    }
+}
+
+/// How stored values are to be decoded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColourSpace {
+    /// What a file's tag claims is believed where the data bear it out.
+    #[default]
+    Auto,
+    /// As they are, whatever the file claims.
+    Linear,
+    /// By the sRGB curve, whatever the file claims.
+    Srgb,
 }
 
 /// A rectangle of texels, from the top left corner.
@@ -35,14 +73,14 @@ pub struct InputOptions {
     pub y: GreenAxis,
     /// What lies beyond the edge; of the crop, when there is one.
     pub wrap: Wrap,
-    /// Which channels hold the normal.
-    pub channels: Channels,
+    /// Which channels hold the normal. None: x, y, z, unless the data say that they are something else, which is refused.
+    pub channels: Option<Channels>,
     /// When given, the file is a height map, and this is the height in texels of the value 1.0.
     pub height: Option<f32>,
     /// The part to use. Heights are turned into normals before they are cropped, so that a crop's edge keeps its slope.
     pub crop: Option<Crop>,
-    /// Take the values of a file tagged as sRGB as they are.
-    pub assume_linear: bool,
+    /// How stored values are to be decoded.
+    pub colour_space: ColourSpace,
     /// Most bytes to hold for this file while loading.
     pub max_memory: u64,
 }
@@ -52,10 +90,10 @@ impl Default for InputOptions {
         InputOptions {
             y: GreenAxis::Up,
             wrap: Wrap::Repeat,
-            channels: Channels::Xyz,
+            channels: None,
             height: None,
             crop: None,
-            assume_linear: false,
+            colour_space: ColourSpace::Auto,
             max_memory: DEFAULT_MAX_MEMORY,
         }
     }

@@ -18,6 +18,7 @@ impl Pixels {
         let orientation = stored.orientation;
         let values = match values {
             Values::Grey(v) => Values::Grey(orientation.texels((width, height), v)),
+            Values::GreyAlpha(v) => Values::GreyAlpha(orientation.texels((width, height), v)),
             Values::Rgb(v) => Values::Rgb(orientation.texels((width, height), v)),
             Values::Rgba(v) => Values::Rgba(orientation.texels((width, height), v)),
         };
@@ -30,10 +31,49 @@ impl Pixels {
 pub(super) enum Values {
     /// One channel.
     Grey(Vec<f32>),
+    /// One channel and alpha.
+    GreyAlpha(Vec<[f32; 2]>),
     /// Three channels in the order of the file.
     Rgb(Vec<[f32; 3]>),
     /// Three channels and alpha.
     Rgba(Vec<[f32; 4]>),
+}
+
+impl Values {
+    /// Number of texels.
+    pub fn len(&self) -> usize {
+        match self {
+            Values::Grey(v) => v.len(),
+            Values::GreyAlpha(v) => v.len(),
+            Values::Rgb(v) => v.len(),
+            Values::Rgba(v) => v.len(),
+        }
+    }
+
+    /// A texel as red, green, blue and alpha: grey is all three colours, and alpha is 1 where there is none.
+    pub fn texel(&self, at: usize) -> [f32; 4] {
+        match self {
+            Values::Grey(v) => [v[at], v[at], v[at], 1.0],
+            Values::GreyAlpha(v) => [v[at][0], v[at][0], v[at][0], v[at][1]],
+            Values::Rgb(v) => [v[at][0], v[at][1], v[at][2], 1.0],
+            Values::Rgba(v) => v[at],
+        }
+    }
+
+    /// All texels in order.
+    pub fn texels(&self) -> impl Iterator<Item = [f32; 4]> {
+        (0..self.len()).map(|at| self.texel(at))
+    }
+
+    /// Whether texels have an alpha of their own.
+    pub fn has_alpha(&self) -> bool {
+        matches!(self, Values::GreyAlpha(_) | Values::Rgba(_))
+    }
+
+    /// Whether the three colours are one channel.
+    pub fn is_grey(&self) -> bool {
+        matches!(self, Values::Grey(_) | Values::GreyAlpha(_))
+    }
 }
 
 /// How pixels were stored.

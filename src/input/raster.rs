@@ -152,12 +152,11 @@ fn orientation(bytes: &[u8], format: ImageFormat, decoder: &mut impl ImageDecode
 
 /// What the file says of its colours.
 fn tag(bytes: &[u8], format: ImageFormat, decoder: &mut impl ImageDecoder) -> ColourTag {
-    // A profile that cannot be read is no claim.
-    match decoder.icc_profile() {
-        Ok(Some(profile)) => ColourTag::of_profile(&profile),
-        _ if format == ImageFormat::Png => ColourTag::of_png_chunks(bytes),
-        _ => ColourTag::default(),
+    if format == ImageFormat::Png {
+        return ColourTag::of_png(bytes);
     }
+    // A profile that cannot be taken out of its file is no claim.
+    decoder.icc_profile().ok().flatten().map(|profile| ColourTag::of_profile(&profile)).unwrap_or_default()
 }
 
 /// Bits of a whole number; `None` for floats.
@@ -195,9 +194,9 @@ fn values(path: &Path, image: DynamicImage) -> Result<Values, InputError> {
     let unorm16 = |v: u16| v as f32 / 65535.0;
     Ok(match image {
         DynamicImage::ImageLuma8(i) => Values::Grey(i.pixels().map(|p| unorm8(p[0])).collect()),
-        DynamicImage::ImageLumaA8(i) => Values::Grey(i.pixels().map(|p| unorm8(p[0])).collect()),
+        DynamicImage::ImageLumaA8(i) => Values::GreyAlpha(i.pixels().map(|p| p.0.map(unorm8)).collect()),
         DynamicImage::ImageLuma16(i) => Values::Grey(i.pixels().map(|p| unorm16(p[0])).collect()),
-        DynamicImage::ImageLumaA16(i) => Values::Grey(i.pixels().map(|p| unorm16(p[0])).collect()),
+        DynamicImage::ImageLumaA16(i) => Values::GreyAlpha(i.pixels().map(|p| p.0.map(unorm16)).collect()),
         DynamicImage::ImageRgb8(i) => Values::Rgb(i.pixels().map(|p| p.0.map(unorm8)).collect()),
         DynamicImage::ImageRgba8(i) => Values::Rgba(i.pixels().map(|p| p.0.map(unorm8)).collect()),
         DynamicImage::ImageRgb16(i) => Values::Rgb(i.pixels().map(|p| p.0.map(unorm16)).collect()),

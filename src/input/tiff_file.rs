@@ -202,6 +202,7 @@ impl Layout {
         let grey = matches!(self.photometric, Photometric::BlackIsZero | Photometric::WhiteIsZero);
         let alpha = matches!(self.extra.first(), Some(1 | 2)) || (self.extra.is_empty() && self.samples == 4);
         match self.samples {
+            2 if self.photometric == Photometric::BlackIsZero => Ok(Values::GreyAlpha(self.channels::<2>(reader)?)),
             1 | 2 => Ok(Values::Grey(self.channels::<1>(reader)?.into_iter().map(|[v]| v).collect())),
             4.. if alpha && self.photometric == Photometric::RGB => {
                 let mut values = self.channels::<4>(reader)?;

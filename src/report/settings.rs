@@ -3,7 +3,7 @@
 use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
 use crate::input::environment::load_environment;
-use crate::input::{Crop, InputOptions, load_normal_map};
+use crate::input::{ColourSpace, Crop, InputOptions, load_normal_map};
 use glint_bake_core::environment::EnvironmentImage;
 use glint_bake_core::normal_map::NormalMap;
 use std::path::{Path, PathBuf};
@@ -58,7 +58,12 @@ impl Settings {
             let maps: Vec<String> = self.maps.iter().map(|path| path.display().to_string()).collect();
             add("--maps", Some(maps.join(" ")));
             add("--crop", self.input.crop.map(|crop| format!("{}x{}+{}+{}", crop.w, crop.h, crop.x, crop.y)));
-            add("--assume-linear", self.input.assume_linear.then(String::new));
+            let colour_space = match self.input.colour_space {
+                ColourSpace::Auto => None,
+                ColourSpace::Linear => Some("linear".to_owned()),
+                ColourSpace::Srgb => Some("srgb".to_owned()),
+            };
+            add("--colour-space", colour_space);
         }
         if report == "frames" {
             add("--frames", self.frames.map(|frames| frames.to_string()));
@@ -108,7 +113,7 @@ impl Settings {
 
     /// The same, read with these options.
     pub fn normal_map_as(&self, file: &str, options: &InputOptions) -> Result<NormalMap, Failure> {
-        let options = InputOptions { assume_linear: true, ..*options };
+        let options = InputOptions { colour_space: ColourSpace::Linear, ..*options };
         Ok(load_normal_map(&self.data(file)?, &options)?.map)
     }
 

@@ -33,10 +33,17 @@ const CARGO_RUNS: [&str; 2] = ["cargo run --release --features view --bin ", "ca
 
 /// The pages, relative to the repository.
 fn pages() -> Vec<PathBuf> {
-    let mut pages: Vec<PathBuf> =
-        ["README.md", "CONTRIBUTING.md", "docs/CLI.md", "docs/FORMAT.md", "docs/PIPELINES.md", "docs/VIEWER.md"]
-            .map(PathBuf::from)
-            .to_vec();
+    let mut pages: Vec<PathBuf> = [
+        "README.md",
+        "CONTRIBUTING.md",
+        "docs/CLI.md",
+        "docs/FORMAT.md",
+        "docs/INPUTS.md",
+        "docs/PIPELINES.md",
+        "docs/VIEWER.md",
+    ]
+    .map(PathBuf::from)
+    .to_vec();
     let methods = fs::read_dir(root().join("docs/methods")).unwrap();
     pages.extend(methods.map(|entry| Path::new("docs/methods").join(entry.unwrap().file_name())));
     pages.sort();

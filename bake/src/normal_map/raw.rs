@@ -46,13 +46,7 @@ impl RawNormals {
     /// `BadInput` when `xy` has not `width · height` entries or the map is empty.
     pub fn from_xy(width: u32, height: u32, xy: &[[f32; 2]]) -> Result<RawNormals> {
         check_count(width, height, xy.len())?;
-        let lift = |&[x, y]: &[f32; 2]| {
-            let rest = 1.0 - x * x - y * y;
-            // A NaN must stay one, to be found and named with its texel; f32::max would swallow it.
-            let z = if rest < 0.0 { 0.0 } else { rest.sqrt() };
-            [x, y, z]
-        };
-        Ok(RawNormals { width, height, vectors: xy.iter().map(lift).collect() })
+        Ok(RawNormals { width, height, vectors: xy.iter().copied().map(lifted).collect() })
     }
 
     /// Unit normals of a height field by central differences, +Y up. `scale_texels` is the height, in texels, of the
@@ -101,6 +95,13 @@ impl RawNormals {
         let vectors = crop_rows(&self.vectors, (self.width, self.height), (x, y), (width, height))?;
         Ok(RawNormals { width, height, vectors })
     }
+}
+
+/// A vector of two of its components: z = √(1 − x² − y²), 0 where there is no such number.
+pub fn lifted([x, y]: [f32; 2]) -> [f32; 3] {
+    let rest = 1.0 - x * x - y * y;
+    // A NaN must stay one, to be found and named with its texel; f32::max would swallow it.
+    [x, y, if rest < 0.0 { 0.0 } else { rest.sqrt() }]
 }
 
 /// Indices before and after `i` on an axis of `n` texels, and the distance between them (1 on an axis of one texel,

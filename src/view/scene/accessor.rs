@@ -1,107 +1,67 @@
-//! The part of glTF 2.0's JSON that geometry needs (specification, sections 3.6 and 3.7), and numbers out of its buffers.
-//! Every index, offset and count is checked before use; integer components are read too (KHR_mesh_quantization).
+//! Numbers out of the buffers of a glTF file (specification, sections 3.6 and 3.11). Every index, offset and count is checked
+//! before use; integer components are read too (KHR_mesh_quantization). What is read is what is asked for, element by
+//! element: a count that lies costs nothing.
 
+use super::document::{Accessor, Document};
 use super::fault::Fault;
 use super::mesh::MAX_TRIANGLES;
-use serde::Deserialize;
 use std::collections::HashMap;
 
 /// Elements of an accessor, at most: every corner of every triangle.
-const MAX_COUNT: u64 = 3 * MAX_TRIANGLES as u64;
+pub(super) const MAX_COUNT: u64 = 3 * MAX_TRIANGLES as u64;
 
-#[derive(Debug, Default, Deserialize)]
-#[serde(default, rename_all = "camelCase")]
-pub(super) struct Document {
-    pub asset: Asset,
-    pub extensions_required: Vec<String>,
-    pub scene: Option<usize>,
-    pub scenes: Vec<Scene>,
-    pub nodes: Vec<Node>,
-    pub meshes: Vec<Primitives>,
-    pub accessors: Vec<Accessor>,
-    pub buffer_views: Vec<View>,
-    pub buffers: Vec<Buffer>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Asset {
-    pub version: String,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Scene {
-    pub nodes: Vec<usize>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Node {
-    pub children: Vec<usize>,
-    pub mesh: Option<usize>,
-    pub matrix: Option<[f32; 16]>,
-    pub translation: [f32; 3],
-    pub rotation: Option<[f32; 4]>,
-    pub scale: Option<[f32; 3]>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Primitives {
-    pub primitives: Vec<Primitive>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Primitive {
-    pub attributes: HashMap<String, usize>,
-    pub indices: Option<usize>,
-    pub mode: Option<u32>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default, rename_all = "camelCase")]
-pub(super) struct Accessor {
-    pub buffer_view: Option<usize>,
-    pub byte_offset: u64,
-    pub component_type: u32,
-    pub normalized: bool,
-    pub count: u64,
-    #[serde(rename = "type")]
-    pub shape: String,
-    pub sparse: Option<Box<Sparse>>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Sparse {
-    pub count: u64,
-    pub indices: Accessor,
-    pub values: Accessor,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default, rename_all = "camelCase")]
-pub(super) struct View {
-    pub buffer: usize,
-    pub byte_offset: u64,
-    pub byte_length: u64,
-    pub byte_stride: Option<u64>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default, rename_all = "camelCase")]
-pub(super) struct Buffer {
-    pub uri: Option<String>,
-    pub byte_length: u64,
-}
+const UNSIGNED_INT: u32 = 5125;
+const FLOAT: u32 = 5126;
 
 /// A document with the bytes of its buffers.
 #[derive(Debug)]
 pub(super) struct Source {
     pub document: Document,
     pub buffers: Vec<Vec<u8>>,
+}
+
+/// Places of one size in a buffer, at equal distances.
+#[derive(Clone, Copy, Debug)]
+struct Elements<'a> {
+    /// From the first byte of the first element to the last of the last.
+    bytes: &'a [u8],
+    stride: usize,
+    size: usize,
+}
+
+impl<'a> Elements<'a> {
+    fn get(&self, i: usize) -> &'a [u8] {
+        &self.bytes[i * self.stride..][..self.size]
+    }
+}
+
+/// An accessor of vectors of `N` numbers.
+#[derive(Debug)]
+pub(super) struct Vectors<'a, const N: usize> {
+    count: usize,
+    elements: Option<Elements<'a>>,
+    replaced: HashMap<u32, &'a [u8]>,
+    component_type: u32,
+    normalized: bool,
+}
+
+impl<const N: usize> Vectors<'_, N> {
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether the numbers are stored as integers.
+    pub fn is_quantised(&self) -> bool {
+        self.component_type != FLOAT
+    }
+
+    /// Vector `i`, which is less than [`Vectors::len`]; zeros where the file has none.
+    pub fn get(&self, i: usize) -> [f32; N] {
+        let replaced = self.replaced.get(&(i as u32)).copied();
+        let Some(bytes) = replaced.or_else(|| Some(self.elements?.get(i))) else { return [0.0; N] };
+        let size = bytes.len() / N;
+        std::array::from_fn(|k| component(&bytes[k * size..][..size], self.component_type, self.normalized))
+    }
 }
 
 fn bad(what: String) -> Fault {
@@ -113,7 +73,7 @@ fn component_size(component_type: u32) -> Option<u64> {
     match component_type {
         5120 | 5121 => Some(1),
         5122 | 5123 => Some(2),
-        5125 | 5126 => Some(4),
+        UNSIGNED_INT | FLOAT => Some(4),
         _ => None,
     }
 }
@@ -126,7 +86,7 @@ fn component(bytes: &[u8], component_type: u32, normalized: bool) -> f32 {
         (5121, &[a]) => scaled(f32::from(a), 255.0),
         (5122, &[a, b]) => scaled(f32::from(i16::from_le_bytes([a, b])), 32_767.0),
         (5123, &[a, b]) => scaled(f32::from(u16::from_le_bytes([a, b])), 65_535.0),
-        (5126, &[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]),
+        (FLOAT, &[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]),
         _ => f32::NAN,
     }
 }
@@ -136,38 +96,51 @@ fn whole(bytes: &[u8]) -> u32 {
     bytes.iter().rev().fold(0, |number, &byte| number << 8 | u32::from(byte))
 }
 
+/// Bytes of one index.
+fn index_size(component_type: u32) -> Option<u64> {
+    component_size(component_type).filter(|_| matches!(component_type, 5121 | 5123 | UNSIGNED_INT))
+}
+
 impl Source {
-    /// `count` elements of `size` bytes of an accessor, one after the other.
-    fn elements(&self, accessor: &Accessor, view: usize, count: u64, size: u64) -> Result<Vec<&[u8]>, Fault> {
+    /// `count` elements of `size` bytes from byte `offset` of a buffer view on.
+    fn elements(&self, view: usize, offset: u64, count: u64, size: u64) -> Result<Elements<'_>, Fault> {
+        let number = view;
         let Some(view) = self.document.buffer_views.get(view) else {
-            return Err(bad(format!("an accessor asks for buffer view {view}, which is not there")));
+            let there = self.document.buffer_views.len();
+            return Err(bad(format!("it asks for buffer view {number}, {there} are there")));
         };
         let Some(buffer) = self.buffers.get(view.buffer) else {
-            return Err(bad(format!("a buffer view asks for buffer {}, which is not there", view.buffer)));
+            let (asked, there) = (view.buffer, self.buffers.len());
+            return Err(bad(format!("buffer view {number} asks for buffer {asked}, {there} are there")));
         };
-        let outside = || bad(format!("an accessor of {count} elements ends after its buffer view"));
-        let end = view.byte_offset.checked_add(view.byte_length).ok_or_else(outside)?;
-        let bytes = buffer
-            .get(
-                usize::try_from(view.byte_offset).map_err(|_| outside())?
-                    ..usize::try_from(end).map_err(|_| outside())?,
-            )
-            .ok_or_else(|| bad(format!("a buffer view ends at byte {end} of a buffer of {}", buffer.len())))?;
         let stride = view.byte_stride.filter(|&stride| stride > 0).unwrap_or(size);
-        let element = |i: u64| -> Option<&[u8]> {
-            let start = i.checked_mul(stride)?.checked_add(accessor.byte_offset)?;
-            bytes.get(usize::try_from(start).ok()?..usize::try_from(start.checked_add(size)?).ok()?)
+        let range = |start: u64, end: Option<u64>| Some(usize::try_from(start).ok()?..usize::try_from(end?).ok()?);
+        let viewed = range(view.byte_offset, view.byte_offset.checked_add(view.byte_length));
+        let Some(viewed) = viewed.and_then(|range| buffer.get(range)) else {
+            let (start, length, there) = (view.byte_offset, view.byte_length, buffer.len());
+            return Err(bad(format!(
+                "buffer view {number} has {length} bytes from byte {start} on, buffer {} has {there}",
+                view.buffer
+            )));
         };
-        // The last one first: a count that lies costs nothing.
-        if count > 0 {
-            element(count - 1).ok_or_else(outside)?;
-        }
-        (0..count).map(|i| element(i).ok_or_else(outside)).collect()
+        let last = count.checked_sub(1).map(|last| last.checked_mul(stride).and_then(|at| at.checked_add(size)));
+        let length = last.unwrap_or(Some(0));
+        let used = range(offset, length.and_then(|length| length.checked_add(offset)));
+        let Some(bytes) = used.and_then(|range| viewed.get(range)) else {
+            let there = viewed.len();
+            return Err(bad(format!(
+                "its {count} elements of {size} bytes, {stride} apart from byte {offset} on, end after buffer view \
+                 {number} of {there} bytes"
+            )));
+        };
+        // A stride that does not fit has not more than one element.
+        Ok(Elements { bytes, stride: usize::try_from(stride).unwrap_or(0), size: size as usize })
     }
 
     fn accessor(&self, index: usize) -> Result<&Accessor, Fault> {
+        let there = self.document.accessors.len();
         let accessor = self.document.accessors.get(index);
-        let accessor = accessor.ok_or_else(|| bad(format!("accessor {index} is asked for, but not there")))?;
+        let accessor = accessor.ok_or_else(|| bad(format!("it asks for accessor {index}, {there} are there")))?;
         if accessor.count > MAX_COUNT {
             let found = accessor.count;
             return Err(Fault::TooLarge(format!("accessor {index} has {found} elements, {MAX_COUNT} are the limit")));
@@ -175,55 +148,80 @@ impl Source {
         Ok(accessor)
     }
 
+    /// Elements that a sparse accessor replaces, with what replaces them.
+    fn replaced(&self, accessor: &Accessor, size: u64) -> Result<HashMap<u32, &[u8]>, Fault> {
+        let Some(sparse) = &accessor.sparse else { return Ok(HashMap::new()) };
+        if sparse.count > accessor.count {
+            let (replaced, count) = (sparse.count, accessor.count);
+            return Err(bad(format!("it replaces {replaced} elements, but has {count}")));
+        }
+        let Some(width) = index_size(sparse.indices.component_type) else {
+            let found = sparse.indices.component_type;
+            return Err(bad(format!("its sparse indices have components of type {found}, not 5121, 5123 or 5125")));
+        };
+        let places = self.elements(sparse.indices.buffer_view, sparse.indices.byte_offset, sparse.count, width)?;
+        let values = self.elements(sparse.values.buffer_view, sparse.values.byte_offset, sparse.count, size)?;
+        let mut replaced = HashMap::new();
+        for i in 0..sparse.count as usize {
+            let place = whole(places.get(i));
+            if u64::from(place) >= accessor.count {
+                return Err(bad(format!("it replaces element {place}, but has {}", accessor.count)));
+            }
+            replaced.insert(place, values.get(i));
+        }
+        Ok(replaced)
+    }
+
+    /// How many numbers of an accessor are looked at however few are used.
+    pub fn replaced_count(&self, index: usize) -> u64 {
+        let sparse = self.document.accessors.get(index).and_then(|accessor| accessor.sparse.as_ref());
+        sparse.map_or(0, |sparse| sparse.count)
+    }
+
     /// Vectors of `N` numbers.
-    pub fn vectors<const N: usize>(&self, index: usize) -> Result<Vec<[f32; N]>, Fault> {
+    pub fn vectors<const N: usize>(&self, index: usize) -> Result<Vectors<'_, N>, Fault> {
         let accessor = self.accessor(index)?;
+        let at = |fault: Fault| fault.of(&format!("accessor {index}"));
         let shape = format!("VEC{N}");
-        let Some(one) = component_size(accessor.component_type).filter(|_| accessor.component_type != 5125) else {
-            let found = accessor.component_type;
-            return Err(bad(format!("accessor {index} has components of type {found}, which vectors can't have")));
+        let component_type = accessor.component_type;
+        let Some(one) = component_size(component_type).filter(|_| component_type != UNSIGNED_INT) else {
+            let what = format!("it has components of type {component_type}, vectors have 5120 to 5123 or 5126");
+            return Err(at(bad(what)));
         };
         if accessor.shape != shape {
-            return Err(bad(format!("accessor {index} is a {}, where a {shape} is needed", accessor.shape)));
+            return Err(at(bad(format!("it is a {}, where a {shape} is needed", accessor.shape))));
         }
-        let read = |bytes: &[u8]| -> [f32; N] {
-            std::array::from_fn(|k| {
-                let at = k * one as usize;
-                component(&bytes[at..at + one as usize], accessor.component_type, accessor.normalized)
-            })
-        };
         let size = one * N as u64;
-        let mut vectors = match accessor.buffer_view {
-            Some(view) => self.elements(accessor, view, accessor.count, size)?.into_iter().map(read).collect(),
-            None => vec![[0.0; N]; accessor.count as usize],
-        };
-        if let Some(sparse) = &accessor.sparse {
-            let needed = |view: Option<usize>| view.ok_or_else(|| bad(format!("accessor {index} lacks sparse data")));
-            if sparse.count > accessor.count {
-                return Err(bad(format!("accessor {index} replaces more elements than it has")));
-            }
-            let width = component_size(sparse.indices.component_type).unwrap_or(4);
-            let at = self.elements(&sparse.indices, needed(sparse.indices.buffer_view)?, sparse.count, width)?;
-            let values = self.elements(&sparse.values, needed(sparse.values.buffer_view)?, sparse.count, size)?;
-            for (at, value) in at.into_iter().zip(values) {
-                let place = vectors.get_mut(whole(at) as usize);
-                *place.ok_or_else(|| bad(format!("accessor {index} replaces an element that it has not")))? =
-                    read(value);
-            }
-        }
-        Ok(vectors)
+        let elements = accessor.buffer_view.map(|view| self.elements(view, accessor.byte_offset, accessor.count, size));
+        Ok(Vectors {
+            count: accessor.count as usize,
+            elements: elements.transpose().map_err(at)?,
+            replaced: self.replaced(accessor, size).map_err(at)?,
+            component_type,
+            normalized: accessor.normalized,
+        })
     }
 
     /// Indices of vertices.
     pub fn indices(&self, index: usize) -> Result<Vec<u32>, Fault> {
         let accessor = self.accessor(index)?;
-        let size = match (accessor.component_type, accessor.shape.as_str()) {
-            (5121 | 5123 | 5125, "SCALAR") => component_size(accessor.component_type).unwrap_or(4),
-            _ => return Err(bad(format!("accessor {index} holds no indices: unsigned scalars are needed"))),
+        let at = |fault: Fault| fault.of(&format!("accessor {index}"));
+        let Some(size) = index_size(accessor.component_type).filter(|_| accessor.shape == "SCALAR") else {
+            let (shape, found) = (&accessor.shape, accessor.component_type);
+            let what = format!("it holds no indices but {shape} of type {found}; unsigned scalars are needed");
+            return Err(at(bad(what)));
         };
-        let Some(view) = accessor.buffer_view.filter(|_| accessor.sparse.is_none()) else {
-            return Err(Fault::Unsupported(format!("accessor {index} holds sparse indices; export plain ones")));
+        let count = accessor.count as usize;
+        let mut indices = match accessor.buffer_view {
+            Some(view) => {
+                let elements = self.elements(view, accessor.byte_offset, accessor.count, size).map_err(at)?;
+                (0..count).map(|i| whole(elements.get(i))).collect()
+            }
+            None => vec![0; count],
         };
-        Ok(self.elements(accessor, view, accessor.count, size)?.into_iter().map(whole).collect())
+        for (place, value) in self.replaced(accessor, size).map_err(at)? {
+            indices[place as usize] = whole(value);
+        }
+        Ok(indices)
     }
 }

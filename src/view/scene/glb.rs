@@ -1,14 +1,16 @@
 //! glTF 2.0, as GLB (specification, section 4.4) or as JSON with buffers beside or inside it: the triangles of the default
-//! scene. Materials, textures, skins and animations are passed over.
+//! scene. Of materials only the uv of their textures are read; skins and animations are passed over.
 //!
 //! The gltf crate is not used: 1.4 panics where a primitive's POSITION names an accessor that is not there, and refuses
 //! files that require extensions of materials, which a viewer of geometry can pass over.
 
-use super::accessor::{Document, Node, Primitive, Source};
-use super::assemble::{Corner, MissingNormals, Part};
-use super::fault::{Fault, read_file};
+use super::accessor::{MAX_COUNT, Source};
+use super::assemble::{Corner, MissingNormals, Part, Parts};
+use super::document::{Document, Node, Primitive};
+use super::fault::{Fault, without_mark};
 use super::mesh::{MAX_FILE_BYTES, MAX_TRIANGLES};
-use glam::{Mat3, Mat4, Quat, Vec3, Vec4};
+use super::{texture, uri};
+use glam::{Mat3, Mat4, Quat, Vec2, Vec3, Vec4};
 use std::path::Path;
 
 /// Beginnings of the names of extensions that change no geometry, or that are read.
@@ -23,10 +25,10 @@ const HARMLESS: [&str; 7] = [
 ];
 
 /// The triangles in the bytes of a `.glb` or `.gltf` file in `folder`.
-pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Vec<Part>, Fault> {
+pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Parts, Fault> {
     let (json, mut blob) = if bytes.starts_with(b"glTF") { chunks(bytes)? } else { (bytes, None) };
-    let document: Document =
-        serde_json::from_slice(json).map_err(|error| Fault::Bad(format!("its JSON is not that of glTF: {error}")))?;
+    let document: Document = serde_json::from_slice(without_mark(json)?)
+        .map_err(|error| Fault::Bad(format!("its JSON is not that of glTF: {error}")))?;
     if !document.asset.version.starts_with("2.") {
         let found = &document.asset.version;
         return Err(Fault::Unsupported(format!("it is glTF version '{found}'; export it as version 2")));
@@ -37,22 +39,28 @@ pub(super) fn read(bytes: &[u8], folder: Option<&Path>) -> Result<Vec<Part>, Fau
     let mut buffers: Vec<Vec<u8>> = Vec::new();
     let mut left = MAX_FILE_BYTES;
     for (i, buffer) in document.buffers.iter().enumerate() {
-        let mut data = match &buffer.uri {
-            Some(uri) => fetch(uri, folder, left)?,
-            None => blob
-                .take()
-                .map(<[u8]>::to_vec)
-                .ok_or_else(|| Fault::Bad(format!("buffer {i} has no bytes in the file")))?,
+        let bytes = match &buffer.uri {
+            Some(uri) => uri::fetch(uri, folder, left),
+            None => blob.take().map(<[u8]>::to_vec).ok_or_else(|| Fault::Bad("it has no bytes in the file".to_owned())),
         };
+        let mut data = bytes.map_err(|fault| fault.of(&format!("buffer {i}")))?;
+        left = left.saturating_sub(data.len() as u64);
         if (data.len() as u64) < buffer.byte_length {
             let (found, expected) = (data.len(), buffer.byte_length);
             return Err(Fault::Bad(format!("buffer {i} has {found} bytes where {expected} are declared")));
         }
         data.truncate(buffer.byte_length as usize);
-        left = left.saturating_sub(buffer.byte_length);
         buffers.push(data);
     }
-    Walk { source: Source { document, buffers }, parts: Vec::new(), triangles: 0 }.run()
+    let source = Source { document, buffers };
+    let mut walk = Walk { source: &source, read: Parts::default(), triangles: 0, replaced: 0, passed: None };
+    walk.run()?;
+    match walk.passed {
+        Some(passed) if walk.read.parts.iter().all(|part| part.order.is_empty()) => {
+            Err(Fault::Bad(format!("there are no triangles in it: {passed}")))
+        }
+        _ => Ok(walk.read),
+    }
 }
 
 /// JSON and binary chunk of a GLB.
@@ -89,68 +97,19 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
     Ok((json, None))
 }
 
-/// Bytes that a URI stands for: `data:…;base64,…`, or a file beside this one.
-fn fetch(uri: &str, folder: Option<&Path>, limit: u64) -> Result<Vec<u8>, Fault> {
-    if let Some(data) = uri.strip_prefix("data:") {
-        let text = data.split_once(";base64,").map(|(_, text)| text);
-        let decoded = text.and_then(base64);
-        return decoded.ok_or_else(|| Fault::Bad("a buffer's data URI is not base64".to_owned()));
-    }
-    let name = percent_decoded(uri);
-    let relative = Path::new(&name).is_relative() && !uri.contains(':');
-    let (Some(folder), true) = (folder, relative) else {
-        return Err(Fault::Unsupported(format!(
-            "a buffer lies at '{uri}'; only files beside the .gltf are read: export as GLB"
-        )));
-    };
-    read_file(&folder.join(name), limit)
-}
-
-/// The bytes of `text` in base64 (RFC 4648, section 4), padding optional; `None` for anything else.
-fn base64(text: &str) -> Option<Vec<u8>> {
-    let digits = text.trim_end_matches('=');
-    let mut bytes = Vec::with_capacity(digits.len() / 4 * 3 + 3);
-    let (mut bits, mut held) = (0u32, 0);
-    for digit in digits.bytes() {
-        let value = match digit {
-            b'A'..=b'Z' => digit - b'A',
-            b'a'..=b'z' => digit - b'a' + 26,
-            b'0'..=b'9' => digit - b'0' + 52,
-            b'+' => 62,
-            b'/' => 63,
-            _ => return None,
-        };
-        bits = bits << 6 | u32::from(value);
-        held += 6;
-        if held >= 8 {
-            held -= 8;
-            bytes.push((bits >> held) as u8);
-        }
-    }
-    Some(bytes)
-}
-
-fn percent_decoded(uri: &str) -> String {
-    let bytes = uri.as_bytes();
-    let mut decoded = Vec::with_capacity(bytes.len());
-    let mut i = 0;
-    while i < bytes.len() {
-        let code = (bytes[i] == b'%').then(|| bytes.get(i + 1..i + 3)).flatten();
-        let code = code.and_then(|hex| std::str::from_utf8(hex).ok()).and_then(|hex| u8::from_str_radix(hex, 16).ok());
-        decoded.push(code.unwrap_or(bytes[i]));
-        i += if code.is_some() { 3 } else { 1 };
-    }
-    String::from_utf8_lossy(&decoded).into_owned()
-}
-
-struct Walk {
-    source: Source,
-    parts: Vec<Part>,
+struct Walk<'a> {
+    source: &'a Source,
+    read: Parts,
+    /// Triangles so far, those that are dropped included: they cost time too.
     triangles: usize,
+    /// Elements of sparse accessors so far, which are looked at for each primitive.
+    replaced: u64,
+    /// The first primitive without triangles, and why.
+    passed: Option<String>,
 }
 
-impl Walk {
-    fn run(mut self) -> Result<Vec<Part>, Fault> {
+impl Walk<'_> {
+    fn run(&mut self) -> Result<(), Fault> {
         let document = &self.source.document;
         let count = document.nodes.len();
         let mut waiting: Vec<(usize, Mat4)> = match document.scenes.get(document.scene.unwrap_or(0)) {
@@ -167,79 +126,152 @@ impl Walk {
         waiting.reverse();
         let mut seen = vec![false; count];
         while let Some((index, parent)) = waiting.pop() {
-            let Some(node) = self.source.document.nodes.get(index) else {
-                return Err(Fault::Bad(format!("node {index} is asked for, but not there")));
+            let Some(node) = document.nodes.get(index) else {
+                return Err(Fault::Bad(format!("the scene asks for node {index}, {count} are there")));
             };
             if std::mem::replace(&mut seen[index], true) {
                 return Err(Fault::Bad(format!("node {index} is in the scene twice: nodes are a tree")));
             }
             let world = parent * transform(node);
             waiting.extend(node.children.iter().rev().map(|&child| (child, world)));
-            let Some(mesh) = node.mesh else { continue };
-            let Some(mesh) = self.source.document.meshes.get(mesh) else {
-                return Err(Fault::Bad(format!("mesh {mesh} is asked for, but not there")));
+            let Some(number) = node.mesh else { continue };
+            let Some(mesh) = document.meshes.get(number) else {
+                let there = document.meshes.len();
+                return Err(Fault::Bad(format!("node {index} asks for mesh {number}, {there} are there")));
             };
-            for primitive in &mesh.primitives {
-                let part = self.part(primitive, world)?;
-                self.triangles += part.triangles();
-                if self.triangles > MAX_TRIANGLES {
-                    return Err(Fault::TooLarge(format!("it has more than {MAX_TRIANGLES} triangles, the limit")));
-                }
-                self.parts.push(part);
+            for (i, primitive) in mesh.primitives.iter().enumerate() {
+                let name = mesh.name.as_ref().map(|name| format!(" '{name}'")).unwrap_or_default();
+                let name = format!("mesh {number}{name}, primitive {i}");
+                let part = self.part(primitive, world, &name).map_err(|fault| fault.of(&name))?;
+                self.read.parts.extend(part);
             }
         }
-        Ok(self.parts)
+        Ok(())
+    }
+
+    /// A primitive's indices of vertices.
+    fn order(&mut self, primitive: &Primitive, position: usize) -> Result<Vec<u32>, Fault> {
+        // Compressed data may come with plain data beside them, which are read then.
+        let plain = |index: usize| self.source.document.accessors.get(index).is_none_or(|a| a.buffer_view.is_some());
+        if primitive.extensions.draco.is_some() && !plain(position) {
+            let what = "its data are compressed by KHR_draco_mesh_compression, which is not read; export without it";
+            return Err(Fault::Unsupported(what.to_owned()));
+        }
+        let accessors = primitive.attributes.values().copied().chain(primitive.indices);
+        self.replaced += accessors.map(|index| self.source.replaced_count(index)).sum::<u64>();
+        if self.replaced > MAX_COUNT {
+            let what = format!("sparse accessors up to here have more than {MAX_COUNT} elements, the limit");
+            return Err(Fault::TooLarge(what));
+        }
+        let count = self.source.vectors::<3>(position)?.len();
+        let order = match primitive.indices {
+            Some(index) => self.source.indices(index)?,
+            None => (0..count as u32).collect(),
+        };
+        if let Some(at) = order.iter().position(|&index| index as usize >= count) {
+            let wrong = order[at];
+            return Err(Fault::Bad(format!("index {at} asks for vertex {wrong}, {count} are there")));
+        }
+        Ok(order)
     }
 
     /// The triangles of a primitive in the world; none for points and lines.
-    fn part(&self, primitive: &Primitive, world: Mat4) -> Result<Part, Fault> {
-        let mut part = Part { corners: Vec::new(), missing: MissingNormals::Flat };
+    fn part(&mut self, primitive: &Primitive, world: Mat4, name: &str) -> Result<Option<Part>, Fault> {
         let mode = primitive.mode.unwrap_or(4);
-        if !(4..=6).contains(&mode) {
-            return Ok(part);
+        let position = match (mode, primitive.attributes.get("POSITION")) {
+            (4..=6, Some(&position)) => position,
+            (0..=6, _) => {
+                let why = match mode {
+                    0 => "it has points",
+                    1..=3 => "it has lines",
+                    _ => "it has no POSITION",
+                };
+                self.passed.get_or_insert_with(|| format!("{name}: {why}"));
+                return Ok(None);
+            }
+            _ => return Err(Fault::Bad(format!("its mode is {mode}, 0 to 6 are known"))),
+        };
+        let order = self.order(primitive, position)?;
+        let source = self.source;
+        self.triangles += if mode == 4 { order.len() / 3 } else { order.len().saturating_sub(2) };
+        if self.triangles > MAX_TRIANGLES {
+            let what = format!("up to here there are {} triangles, {MAX_TRIANGLES} are the limit", self.triangles);
+            return Err(Fault::TooLarge(what));
         }
-        let source = &self.source;
-        let Some(&position) = primitive.attributes.get("POSITION") else { return Ok(part) };
         let positions = source.vectors::<3>(position)?;
         let get = |name: &str| primitive.attributes.get(name).copied();
         let normals = get("NORMAL").map(|index| source.vectors::<3>(index)).transpose()?;
         let tangents = get("TANGENT").map(|index| source.vectors::<4>(index)).transpose()?;
-        let uv = get("TEXCOORD_0").map(|index| source.vectors::<2>(index)).transpose()?;
-        let order = match primitive.indices {
-            Some(index) => source.indices(index)?,
-            None => (0..positions.len() as u32).collect(),
+        let first = get("TEXCOORD_0").map(|index| source.vectors::<2>(index)).transpose()?;
+        let material = match primitive.material {
+            Some(number) => Some(source.document.materials.get(number).ok_or_else(|| {
+                let there = source.document.materials.len();
+                Fault::Bad(format!("it asks for material {number}, {there} are there"))
+            })?),
+            None => None,
         };
-        if let Some(&wrong) = order.iter().find(|&&index| index as usize >= positions.len()) {
-            let count = positions.len();
-            return Err(Fault::Bad(format!("a triangle asks for vertex {wrong} of {count}")));
+        let (place, note) = texture::place(material, first.as_ref().is_some_and(|uv| uv.is_quantised()));
+        self.read.notes.extend(note);
+        let attribute = format!("TEXCOORD_{}", place.set);
+        let uv =
+            if place.set == 0 { first } else { get(&attribute).map(|index| source.vectors::<2>(index)).transpose()? };
+        if uv.is_none() && place.set != 0 {
+            self.read.notes.push(format!("{name}: its texture asks for {attribute}, which is missing"));
+        }
+        // Tangents of a file point along its own uv.
+        let tangents = tangents.filter(|_| {
+            if place.turns() {
+                self.read.notes.push("a texture transform turns uv: tangents are computed".to_owned());
+            }
+            !place.turns()
+        });
+        let counts = [
+            ("NORMAL", normals.as_ref().map(|normals| normals.len())),
+            ("TANGENT", tangents.as_ref().map(|tangents| tangents.len())),
+            (attribute.as_str(), uv.as_ref().map(|uv| uv.len())),
+        ];
+        for (attribute, found) in counts {
+            let expected = positions.len();
+            if let Some(found) = found.filter(|&found| found != expected) {
+                return Err(Fault::Bad(format!("{attribute} has {found} elements, POSITION has {expected}")));
+            }
         }
         let linear = Mat3::from_mat4(world);
         // Normals go with the inverse transpose, which is this but for a positive factor; it exists for flat scales too.
         let side = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
         let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
         let normal_matrix = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * side;
-        let corner = |index: u32| {
+        let corner = |&index: &u32| {
             let i = index as usize;
-            let normal = normals.as_ref().and_then(|n| n.get(i)).map(|&n| normal_matrix * Vec3::from(n));
-            let tangent = tangents.as_ref().and_then(|t| t.get(i)).map(|&t| {
-                let along = linear * Vec4::from(t).truncate();
-                along.extend(t[3] * side)
-            });
             Corner {
-                position: world.transform_point3(positions[i].into()),
+                position: world.transform_point3(positions.get(i).into()),
                 point: index,
-                normal,
-                uv: uv.as_ref().and_then(|uv| uv.get(i)).map(|&uv| uv.into()),
-                tangent,
+                normal: normals.as_ref().map(|normals| normal_matrix * Vec3::from(normals.get(i))),
+                uv: uv.as_ref().map(|uv| place.apply(Vec2::from(uv.get(i)))),
+                tangent: tangents.as_ref().map(|tangents| {
+                    let tangent = Vec4::from(tangents.get(i));
+                    (linear * tangent.truncate()).extend(tangent.w * side)
+                }),
             }
         };
+        // Vertices that a triangle has, once each.
+        let mut used = order.clone();
+        used.sort_unstable();
+        used.dedup();
+        let place_of = |index: u32| used.binary_search(&index).unwrap_or_default() as u32;
+        let corners: Vec<Corner> = used.iter().map(corner).collect();
+        corners.iter().try_for_each(Corner::check).map_err(Fault::Bad)?;
+        let mut part = Part { corners, order: Vec::new(), missing: MissingNormals::Flat };
         for [a, b, c] in triangles(&order, mode) {
             if a != b && b != c && c != a {
                 let (b, c) = if side < 0.0 { (c, b) } else { (b, c) };
-                part.corners.extend([corner(a), corner(b), corner(c)]);
+                part.order.extend([a, b, c].map(place_of));
             }
         }
-        Ok(part)
+        if part.order.is_empty() {
+            self.passed.get_or_insert_with(|| format!("{name}: no three of its vertices are a triangle"));
+        }
+        Ok(Some(part))
     }
 }
 

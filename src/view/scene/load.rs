@@ -1,10 +1,13 @@
 //! A mesh from an OBJ or glTF file.
 
-use super::assemble::Part;
+use super::assemble::{Part, Parts};
 use super::fault::{Fault, read_file};
-use super::mesh::{Bounds, MAX_FILE_BYTES, MAX_TRIANGLES, MAX_VERTICES, Mesh};
+use super::mesh::{Bounds, MAX_FILE_BYTES, MAX_VERTICES, Mesh};
 use super::{glb, obj};
 use std::path::{Path, PathBuf};
+
+/// Notes on a mesh, at most: a file may have any number of materials.
+const MAX_NOTES: usize = 20;
 
 /// Why a mesh file gives no mesh. Each message names the file, what is wrong and what to do.
 #[derive(Debug, thiserror::Error)]
@@ -50,7 +53,11 @@ impl MeshError {
             Fault::Bad(what) => MeshError::Bad { path, what },
             Fault::Unsupported(what) => MeshError::Unsupported { path, what },
             Fault::TooLarge(what) => MeshError::TooLarge { path, what },
-            Fault::Io(file, source) => MeshError::Io { path: file, source },
+            Fault::Io(file, source) if file == path => MeshError::Io { path, source },
+            Fault::Io(file, source) => {
+                let said = format!("a buffer of {}: {source}", path.display());
+                MeshError::Io { path: file, source: std::io::Error::new(source.kind(), said) }
+            }
         }
     }
 }
@@ -75,24 +82,29 @@ impl Mesh {
 }
 
 /// One mesh of the lists of triangles that a file holds.
-fn of_parts(parts: Vec<Part>) -> Result<Mesh, Fault> {
-    let mut mesh = Mesh::default();
-    let triangles: usize = parts.iter().map(Part::triangles).sum();
+fn of_parts(read: Parts) -> Result<Mesh, Fault> {
+    let mut mesh = Mesh { notes: read.notes, ..Mesh::default() };
+    let triangles: usize = read.parts.iter().map(Part::triangles).sum();
     if triangles == 0 {
         return Err(Fault::Bad("there are no triangles in it".to_owned()));
     }
-    if triangles > MAX_TRIANGLES {
-        return Err(Fault::TooLarge(format!("it has {triangles} triangles, {MAX_TRIANGLES} are the limit")));
+    if read.parts.iter().all(|part| !part.has_area()) {
+        return Err(Fault::Bad(format!("it has no triangle with an area, only {triangles} without")));
     }
-    let whole = Bounds::of(parts.iter().flat_map(Part::positions));
-    for part in parts {
-        part.append_to(&mut mesh, whole)?;
+    let whole = Bounds::of(read.parts.iter().flat_map(Part::positions));
+    for part in read.parts {
+        part.append_to(&mut mesh, whole);
         if mesh.vertices.len() > MAX_VERTICES {
             return Err(Fault::TooLarge(format!("it has more than {MAX_VERTICES} vertices, which are the limit")));
         }
     }
     mesh.notes.sort();
     mesh.notes.dedup();
+    if mesh.notes.len() > MAX_NOTES {
+        let more = mesh.notes.len() - MAX_NOTES;
+        mesh.notes.truncate(MAX_NOTES);
+        mesh.notes.push(format!("and {more} more of such notes"));
+    }
     Ok(mesh)
 }
 

@@ -3,13 +3,18 @@
 mod accessor;
 mod assemble;
 mod camera;
+mod document;
 mod fault;
 mod glb;
 mod load;
 mod mesh;
+mod mikktspace;
 mod obj;
+mod polygon;
 mod shapes;
 mod tangents;
+mod texture;
+mod uri;
 
 pub use camera::{CameraTextError, Orbit, Placement};
 pub use load::MeshError;

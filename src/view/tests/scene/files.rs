@@ -64,9 +64,9 @@ fn a_bad_obj_names_the_line() {
         ("v 0 0 0\nf 1/1 1 1\n", "line 2: a face asks for uv 1, 0 are there so far"),
         ("v 0 0 0\nf a 1 1\n", "line 2: 'a' is not a corner"),
         ("v 0 0 0\nf 99999999999999999999 1 1\n", "is not a corner"),
-        ("v NaN 0 0\nf 1 1 1\n", "position 0 is [NaN, 0, 0]"),
+        ("v NaN 0 0\nf 1 1 1\n", "line 2: position 1 is [NaN, 0, 0]"),
         ("v 1e30 0 0\nf 1 1 1\n", "larger than"),
-        ("v 0 0 0\nvt inf 0\nf 1/1 1/1 1/1\n", "uv at position 0"),
+        ("v 0 0 0\nvt inf 0\nf 1/1 1/1 1/1\n", "line 3: the uv at position 1"),
         ("v 0 0 0\n", "no triangles"),
         ("", "no triangles"),
     ] {
@@ -84,7 +84,7 @@ fn a_glb_triangle() {
     assert_eq!(mesh.vertices.len(), 3);
     assert!(faces_outwards(&mesh));
     assert_eq!(share_of_true_frames(&mesh), 1.0);
-    assert_eq!(mesh.notes, ["normals are missing: those of the triangles are taken"]);
+    assert_eq!(mesh.notes, ["normals are missing or zero: those of the triangles are taken"]);
     assert_eq!(mesh.bounds().max, Vec3::new(2.0, 1.0, 0.0));
 }
 
@@ -153,40 +153,54 @@ fn buffers_inside_and_beside_json() {
 
 #[test]
 fn sparse_and_integer_accessors() {
-    // Vertex 2 is moved to (0, 1, 0) + what the sparse values say: those of vertex 1.
+    // Vertex 2 is what the sparse values say: bytes of vertices 0 and 1.
     let edit = |json: String| {
         json.replace(
             r#""count":3,"type":"VEC3""#,
             r#""count":3,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":2,"byteOffset":4,"componentType":5123},
-            "values":{"bufferView":0,"byteOffset":12}}"#,
+            "values":{"bufferView":0,"byteOffset":4}}"#,
         )
     };
     let mesh = load("a.glb", &glb(edit)).unwrap();
-    assert_eq!(mesh.bounds().max, Vec3::new(2.0, 0.0, 0.0));
+    assert_eq!(mesh.bounds().max, Vec3::new(2.0, 0.0, 2.0));
+    // The upper halves of 2.0 and 1.0, 14 bytes apart.
     let quantised = |json: String| {
         json.replace(
             r#""componentType":5126,"count":3,"type":"VEC3""#,
-            r#""componentType":5121,"normalized":true,"count":3,"type":"VEC3""#,
+            r#""componentType":5123,"normalized":true,"count":3,"type":"VEC3""#,
         )
+        .replacen(r#""byteLength":36"#, r#""byteLength":36,"byteStride":14"#, 1)
     };
     let mesh = load("a.glb", &glb(quantised)).unwrap();
-    assert!(mesh.bounds().max.max_element() <= 1.0);
+    assert_eq!(mesh.bounds().max, Vec3::new(16_384.0 / 65_535.0, 16_256.0 / 65_535.0, 0.0));
 }
 
 #[test]
 fn a_bad_glb_says_what() {
     let cases: [(&str, &str, &str); 14] = [
-        (r#""POSITION":0"#, r#""POSITION":99"#, "accessor 99 is asked for, but not there"),
+        (r#""POSITION":0"#, r#""POSITION":99"#, "mesh 0, primitive 0: it asks for accessor 99, 3 are there"),
         (r#""indices":2"#, r#""indices":0"#, "holds no indices"),
-        (r#""POSITION":0"#, r#""POSITION":1"#, "is a VEC2, where a VEC3 is needed"),
-        (r#""mesh":0"#, r#""mesh":7"#, "mesh 7 is asked for"),
+        (r#""POSITION":0"#, r#""POSITION":1"#, "accessor 1: it is a VEC2, where a VEC3 is needed"),
+        (r#""mesh":0"#, r#""mesh":7"#, "node 0 asks for mesh 7, 1 are there"),
         (r#"{"mesh":0}"#, r#"{"mesh":0,"children":[0]}"#, "node 0 is in the scene twice"),
-        (r#"{"nodes":[0]}"#, r#"{"nodes":[5]}"#, "node 5 is asked for"),
-        (r#""count":3,"type":"VEC3""#, r#""count":4,"type":"VEC3""#, "ends after its buffer view"),
+        (r#"{"nodes":[0]}"#, r#"{"nodes":[5]}"#, "the scene asks for node 5, 1 are there"),
+        (r#""count":3,"type":"VEC3""#, r#""count":4,"type":"VEC3""#, "end after buffer view 0 of 36 bytes"),
         (r#""count":3,"type":"VEC3""#, r#""count":18446744073709551615,"type":"VEC3""#, "are the limit"),
-        (r#""byteLength":36}"#, r#""byteLength":36,"byteStride":18446744073709551615}"#, "ends after its buffer view"),
-        (r#""byteOffset":36,"#, r#""byteOffset":18446744073709551615,"#, "ends after its buffer view"),
-        (r#""byteLength":36}"#, r#""byteLength":3600}"#, "a buffer view ends at byte 3600"),
+        (
+            r#""byteLength":36}"#,
+            r#""byteLength":36,"byteStride":18446744073709551615}"#,
+            "end after buffer view 0 of 36 bytes",
+        ),
+        (
+            r#""byteOffset":36,"#,
+            r#""byteOffset":18446744073709551615,"#,
+            "buffer view 1 has 24 bytes from byte 18446744073709551615 on",
+        ),
+        (
+            r#""byteLength":36}"#,
+            r#""byteLength":3600}"#,
+            "buffer view 0 has 3600 bytes from byte 0 on, buffer 0 has 66",
+        ),
         (r#"[{"byteLength":66}]"#, r#"[{"byteLength":660}]"#, "where 660 are declared"),
         (
             r#""bufferView":2,"componentType":5123"#,
