@@ -28,10 +28,14 @@ mod environment;
 mod examples;
 #[path = "cli/export.rs"]
 mod export;
+#[path = "real_maps/folder.rs"]
+mod folder;
 #[path = "cli/generate.rs"]
 mod generate;
 #[path = "cli/info.rs"]
 mod info;
+#[path = "cli/inputs_exr.rs"]
+mod inputs_exr;
 #[path = "cli/lobes.rs"]
 mod lobes;
 #[path = "cli/ninja.rs"]

@@ -28,6 +28,9 @@ pub struct InputFlags {
     /// Read height maps; SCALE is the height of white in texels
     #[arg(long, value_name = "SCALE", value_parser = values::non_zero, allow_negative_numbers = true, help_heading = "Input")]
     pub height: Option<f32>,
+    /// Layer of EXR maps to read, by name; '' is the unnamed one [default: the one that fits]
+    #[arg(long, value_name = "NAME", help_heading = "Input")]
+    pub layer: Option<String>,
     /// Take the values of files tagged as sRGB as they are
     #[arg(long, help_heading = "Input")]
     pub assume_linear: bool,
@@ -94,6 +97,7 @@ impl InputFlags {
             height: self.height,
             crop: self.crop,
             assume_linear: self.assume_linear,
+            layer: self.layer.clone(),
             max_memory,
         }
     }
@@ -109,6 +113,9 @@ impl InputFlags {
         }
         if let Some(scale) = self.height {
             options.push("height", scale);
+        }
+        if let Some(layer) = &self.layer {
+            options.push("layer", layer);
         }
         if self.assume_linear {
             options.push("assume-linear", true);

@@ -15,6 +15,26 @@ pub(super) enum Format {
     Raster(ImageFormat),
 }
 
+impl Format {
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        self.name_and_extensions().0
+    }
+
+    fn name_and_extensions(self) -> (&'static str, &'static [&'static str]) {
+        match self {
+            Format::Exr => ("EXR", &["exr"]),
+            Format::Raster(raster) => match raster {
+                ImageFormat::Png => ("PNG", &["png"]),
+                ImageFormat::Jpeg => ("JPEG", &["jpg", "jpeg", "jfif"]),
+                ImageFormat::Tiff => ("TIFF", &["tif", "tiff"]),
+                ImageFormat::WebP => ("WebP", &["webp"]),
+                _ => ("TGA", &["tga", "vda", "icb", "vst"]),
+            },
+        }
+    }
+}
+
 /// Formats that are recognised only to be refused with a better message.
 const NOT_READ: [(&[u8], &str); 8] = [
     (b"\xabKTX 20\xbb\r\n\x1a\n", "KTX2"),
@@ -64,16 +84,7 @@ pub(super) fn detect(path: &Path, bytes: &[u8]) -> Result<Format, InputError> {
 
 /// A note when the name promises another format than the content has.
 pub(super) fn extension_note(path: &Path, format: Format) -> Option<String> {
-    let (name, extensions): (&str, &[&str]) = match format {
-        Format::Exr => ("EXR", &["exr"]),
-        Format::Raster(raster) => match raster {
-            ImageFormat::Png => ("PNG", &["png"]),
-            ImageFormat::Jpeg => ("JPEG", &["jpg", "jpeg", "jfif"]),
-            ImageFormat::Tiff => ("TIFF", &["tif", "tiff"]),
-            ImageFormat::WebP => ("WebP", &["webp"]),
-            _ => ("TGA", &["tga", "vda", "icb", "vst"]),
-        },
-    };
+    let (name, extensions) = format.name_and_extensions();
     let found = extension(path);
     (!extensions.contains(&found.as_str()))
         .then(|| format!("named .{found}, but the content is {name}; read as {name}"))

@@ -3,7 +3,7 @@
 mod colour_tag;
 pub mod environment;
 mod error;
-mod exr_file;
+mod exr;
 mod format;
 mod limits;
 mod meaning;

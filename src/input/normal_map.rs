@@ -12,7 +12,7 @@ use super::format::{self, Format};
 use super::limits::{from_bake, read};
 use super::options::{Channels, Crop, InputOptions};
 use super::pixels::Pixels;
-use super::{exr_file, meaning, raster};
+use super::{exr, meaning, raster};
 use glint_bake_core::normal_map::{GreenAxis, NormalMap, NormalOptions, NormalReport};
 use glint_formats::provenance::InputDigest;
 use std::path::Path;
@@ -66,8 +66,11 @@ fn decode(path: &Path, bytes: &[u8], options: &InputOptions) -> Result<(Pixels, 
     let format = format::detect(path, bytes)?;
     let mut notes: Vec<String> = format::extension_note(path, format).into_iter().collect();
     let pixels = match format {
-        Format::Exr => exr_file::decode(path, bytes, options)?,
-        Format::Raster(raster) => raster::decode(path, bytes, raster, options, &mut notes)?,
+        Format::Exr => exr::decode(path, bytes, options, &mut notes)?,
+        Format::Raster(raster) => {
+            options.check_has_layers(path, format.name())?;
+            raster::decode(path, bytes, raster, options, &mut notes)?
+        }
     };
     Ok((pixels, notes))
 }

@@ -77,7 +77,8 @@ impl Methods {
             for value in self.values(method, option.entry, folder).map_err(refuse)? {
                 match (key, value) {
                     (INPUT, Value::Text(text)) => line.inputs.push(text),
-                    (_, Value::Text(text)) => line.flags.push((key.to_owned(), typed(key, &text))),
+                    // Not as a flag without a value: an empty text is one too.
+                    (_, Value::Text(text)) => line.flags.push((key.to_owned(), format!("--{key}={text}"))),
                     (_, Value::Flag) => line.flags.push((key.to_owned(), typed(key, ""))),
                 }
             }
