@@ -16,6 +16,7 @@ pub use terminal::{Terminal, bars};
 pub use threads::on_threads;
 
 use crate::exit::{Exit, Failure};
+use crate::input::is_decoding;
 use crate::output;
 use clap::Parser;
 use std::ffi::OsString;
@@ -45,6 +46,10 @@ pub fn run<P: Parser>(
     });
     let report_panic = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
+        // A decoder's panic is caught and becomes an error that names the file.
+        if is_decoding() {
+            return;
+        }
         report_panic(info);
         std::process::exit(i32::from(Exit::Unexpected as u8));
     }));

@@ -4,6 +4,7 @@
 
 use super::error::InputError;
 use super::exr;
+use super::guard::guarded;
 use super::limits::{check_size, from_bake, read};
 use super::options::InputOptions;
 use glint_bake_core::environment::EnvironmentImage;
@@ -35,17 +36,7 @@ pub fn load_environment(path: &Path, layer: Option<&str>, max_memory: u64) -> Re
     let options = InputOptions { layer: layer.map(str::to_owned), max_memory, ..InputOptions::default() };
     let bytes = read(path, max_memory)?;
     let mut warnings = Vec::new();
-    let (width, height, pixels) = if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
-        exr::decode_radiance(path, &bytes, &options, &mut warnings)?
-    } else if bytes.starts_with(b"#?") {
-        options.check_has_layers(path, "Radiance HDR")?;
-        decode_hdr(path, &bytes, &options, &mut warnings)?
-    } else {
-        return Err(InputError::unsupported(
-            path,
-            "expected linear radiance as Radiance HDR or OpenEXR; images of other formats have no range for lights",
-        ));
-    };
+    let (width, height, pixels) = guarded(path, || decode(path, &bytes, &options, &mut warnings))?;
     let image = EnvironmentImage::new(width, height, pixels).map_err(|e| from_bake(path, e))?;
     if let Some((x, y)) = image.report.first_negative {
         let count = image.report.negative_pixels;
@@ -54,6 +45,26 @@ pub fn load_environment(path: &Path, layer: Option<&str>, max_memory: u64) -> Re
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let digest = InputDigest::of(&name, &bytes);
     Ok(LoadedEnvironment { image, digest, warnings })
+}
+
+/// Pixels of any format.
+fn decode(
+    path: &Path,
+    bytes: &[u8],
+    options: &InputOptions,
+    warnings: &mut Vec<String>,
+) -> Result<(u32, u32, Vec<[f32; 3]>), InputError> {
+    if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
+        exr::decode_radiance(path, bytes, options, warnings)
+    } else if bytes.starts_with(b"#?") {
+        options.check_has_layers(path, "Radiance HDR")?;
+        decode_hdr(path, bytes, options, warnings)
+    } else {
+        Err(InputError::unsupported(
+            path,
+            "expected linear radiance as Radiance HDR or OpenEXR; images of other formats have no range for lights",
+        ))
+    }
 }
 
 fn decode_hdr(

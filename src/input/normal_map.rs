@@ -9,6 +9,7 @@
 
 use super::error::InputError;
 use super::format::{self, Format};
+use super::guard::guarded;
 use super::limits::{from_bake, read};
 use super::options::{Channels, Crop, InputOptions};
 use super::pixels::Pixels;
@@ -42,7 +43,7 @@ pub struct LoadedMap {
 /// what to do.
 pub fn load_normal_map(path: &Path, options: &InputOptions) -> Result<LoadedMap, InputError> {
     let bytes = read(path, options.max_memory)?;
-    let (pixels, mut warnings) = decode(path, &bytes, options)?;
+    let (pixels, mut warnings) = guarded(path, || decode(path, &bytes, options))?;
     let raw = meaning::raw_normals(path, pixels, options, &mut warnings)?;
     let raw = match options.crop {
         Some(Crop { x, y, w, h }) => raw.crop(x, y, w, h).map_err(|e| from_bake(path, e))?,

@@ -5,6 +5,7 @@ use crate::canvas::Canvas;
 use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
 use crate::info::Report;
+use crate::input::guarded;
 use crate::output;
 use glam::Vec3;
 use glint_formats::{Limits, Pack};
@@ -136,7 +137,7 @@ fn mesh_of(args: &Args, terminal: Terminal) -> Result<Mesh, Failure> {
             ShapeKind::Sphere => Mesh::sphere(64),
         });
     };
-    let mesh = Mesh::load(path).map_err(|error| {
+    let failure = |error: MeshError| {
         let exit = match error {
             MeshError::Io { .. } => Exit::InputOutput,
             MeshError::Bad { .. } => Exit::BadInput,
@@ -144,7 +145,8 @@ fn mesh_of(args: &Args, terminal: Terminal) -> Result<Mesh, Failure> {
             MeshError::TooLarge { .. } => Exit::LimitExceeded,
         };
         Failure::new(exit, error.to_string())
-    })?;
+    };
+    let mesh = guarded(path, || Mesh::load(path).map_err(failure))?;
     for note in &mesh.notes {
         terminal.say(&format!("{}: {note}", path.display()));
     }

@@ -6,6 +6,8 @@
 use super::dwa;
 use super::fault::Fault;
 use super::header::{Bytes, File};
+use crate::input::error::InputError;
+use crate::input::guard::guarded;
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock, TileCoordinates};
 use exr::compression::Compression;
@@ -16,6 +18,7 @@ use exr::meta::header::Header;
 use half::f16;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
+use std::path::Path;
 
 /// Blocks a thread that are held at once, where memory allows.
 const BLOCKS_A_THREAD: usize = 4;
@@ -24,36 +27,40 @@ const OFFSET: usize = 8;
 
 /// The values of some channels of a part, row-major from the top left.
 pub(super) fn read<const N: usize>(
+    path: &Path,
     file: &File<'_>,
     part: usize,
     channels: [usize; N],
     max_memory: u64,
-) -> Result<Vec<[f32; N]>, Fault> {
+) -> Result<Vec<[f32; N]>, InputError> {
     let header = &file.meta.headers[part];
-    check_compression(header)?;
-    check_samples(header, &channels)?;
-    let offsets = offsets(file, part)?;
+    let of_file = |fault: Fault| fault.of(path);
+    check_compression(header).and_then(|()| check_samples(header, &channels)).map_err(of_file)?;
+    let offsets = offsets(file, part).map_err(of_file)?;
     let texels = header.layer_size.area();
     let held = (texels * N * size_of::<f32>() + file.bytes.len()) as u64;
-    let batch = blocks_at_once(header, max_memory.saturating_sub(held), max_memory)?;
+    let batch = blocks_at_once(header, max_memory.saturating_sub(held), max_memory).map_err(of_file)?;
+    // Each on the thread that decodes it, so that the library's panic is an error wherever it happens.
+    let guarded_block = |offset: &u64| guarded(path, || block(file, part, *offset).map_err(of_file));
 
     let mut values = vec![[0.0; N]; texels];
     let mut seen = BTreeSet::new();
     let mut filled = 0;
     for offsets in offsets.chunks(batch) {
-        let blocks: Vec<_> = offsets.par_iter().map(|offset| block(file, part, *offset)).collect();
+        let blocks: Vec<_> = offsets.par_iter().map(guarded_block).collect();
         for block in blocks {
             let Some(block) = block? else { continue };
             let Vec2(x, y) = block.index.pixel_position;
             if !seen.insert((x, y)) {
-                return Err(Fault::damaged(format_args!("its block at ({x}, {y}) is there twice")));
+                return Err(of_file(Fault::damaged(format_args!("its block at ({x}, {y}) is there twice"))));
             }
             filled += block.index.pixel_size.area();
             place(header, &block, &channels, &mut values);
         }
     }
     if filled != texels {
-        return Err(Fault::damaged(format_args!("{} of {texels} pixels are in no block", texels.abs_diff(filled))));
+        let missing = texels.abs_diff(filled);
+        return Err(of_file(Fault::damaged(format_args!("{missing} of {texels} pixels are in no block"))));
     }
     Ok(values)
 }

@@ -98,6 +98,6 @@ impl Chosen<'_> {
         channels: [usize; N],
         options: &InputOptions,
     ) -> Result<Vec<[f32; N]>, InputError> {
-        blocks::read(&self.file, self.choice.part, channels, options.max_memory).map_err(|fault| fault.of(path))
+        blocks::read(path, &self.file, self.choice.part, channels, options.max_memory)
     }
 }
