@@ -203,18 +203,28 @@ pub fn difference(exact: &GridNdf, seen: &Gathered) -> (f64, f64) {
 const ROUGHNESSES: [f32; 7] = [0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
 
 impl BakedLobes {
-    /// Share of a map that its lobes put beyond the rim of the disk of normals, with `roughness` as the intrinsic one: the largest of
-    /// the texels' and of the stored levels'; any number above `most` where it is more than that. Densities get that mass back
-    /// ([`inside_disk`]), which takes a sum over strips.
-    fn beyond_rim(&self, roughness: f32, most: f32) -> f32 {
+    /// Share of the map that lobes of its texels, with `roughness` as the intrinsic one, put beyond the rim of the disk of normals; any
+    /// number above `most` where it is more than that. Densities get that mass back ([`inside_disk`]), which takes a sum over strips.
+    fn texels_beyond_rim(&self, roughness: f32, most: f32) -> f32 {
         let intrinsic = Vec3::new(roughness * roughness, 0.0, roughness * roughness);
         let of_texel = |s: Vec2| if near_rim(s, intrinsic) { inside_disk(s, intrinsic) } else { 1.0 };
-        let (width, height) = (self.params.width as i32, self.params.height as i32);
-        let texels = (0..height).flat_map(|j| (0..width).map(move |i| (i, j)));
-        let parts = texels.map(|(i, j)| (1.0, of_texel(self.texel(i, j))));
-        let mut share = share_beyond(parts, width as f64 * height as f64, most);
+        let parts = self.texels().map(|s| (1.0, of_texel(s)));
+        share_beyond(parts, f64::from(self.params.width) * f64::from(self.params.height), most)
+    }
+
+    /// No less than [`BakedLobes::texels_beyond_rim`], for an exponential a texel: beyond the rim is outside of the circle around the
+    /// normal that touches the rim, and outside of a circle of radius r lies exp(−r² / 2σ²) of an isotropic Gaussian.
+    fn texels_outside_circle(&self, roughness: f32) -> f64 {
+        let scale = -0.5 / (roughness * roughness);
+        let outside = |s: Vec2| f64::from(libm::expf(scale * (1.0 - s.length()).max(0.0).powi(2)));
+        self.texels().map(outside).sum::<f64>() / (f64::from(self.params.width) * f64::from(self.params.height))
+    }
+
+    /// The largest share that a stored level's lobes put beyond the rim, as [`BakedLobes::texels_beyond_rim`].
+    fn levels_beyond_rim(&self, roughness: f32, most: f32) -> f32 {
         let frame = Frame { mean: Vec2::ZERO, axis: Vec2::X, major: f32::INFINITY, minor: f32::INFINITY };
         let alike = query(frame, roughness);
+        let mut share = 0.0f32;
         for index in (0..self.params.levels.len()).rev() {
             if share > most {
                 break;
@@ -228,11 +238,22 @@ impl BakedLobes {
         share
     }
 
+    /// Projected normals of all texels.
+    fn texels(&self) -> impl Iterator<Item = Vec2> {
+        let (width, height) = (self.params.width as i32, self.params.height as i32);
+        (0..height).flat_map(move |j| (0..width).map(move |i| self.texel(i, j)))
+    }
+
     /// The widest of a few intrinsic roughnesses at which at most `share` of the map lies beyond the rim; 0 if it is more at the least
     /// of them.
     pub(crate) fn rim_roughness(&self, share: f32) -> f32 {
-        let within = |roughness: &f32| self.beyond_rim(*roughness, share) <= share;
-        ROUGHNESSES.into_iter().take_while(within).last().unwrap_or(0.0)
+        // From the widest on: one that has too much beyond the rim shows it in a few texels, one that has not takes them all.
+        let within = |roughness: &f32| {
+            let texels = self.texels_outside_circle(*roughness) <= f64::from(share)
+                || self.texels_beyond_rim(*roughness, share) <= share;
+            texels && self.levels_beyond_rim(*roughness, share) <= share
+        };
+        ROUGHNESSES.into_iter().rev().find(within).unwrap_or(0.0)
     }
 }
 
@@ -262,6 +283,23 @@ mod tests {
         let projected = (0..32 * 32).map(|k| [steepest * (k % 32) as f32 / 31.0, 0.0]).collect();
         let map = NormalMap { width: 32, height: 32, wrap: Wrap::Clamp, projected };
         bake(&map, &LobesOptions { footprints: 0, ..LobesOptions::default() }, &Silent).unwrap()
+    }
+
+    impl BakedLobes {
+        /// The larger of both shares.
+        fn beyond_rim(&self, roughness: f32, most: f32) -> f32 {
+            self.texels_beyond_rim(roughness, most).max(self.levels_beyond_rim(roughness, most))
+        }
+    }
+
+    #[test]
+    fn the_circle_bounds_what_lies_beyond_the_rim() {
+        for (steepest, roughness) in [(0.0, 0.2), (0.5, 0.1), (0.7, 0.5), (0.99, 0.02), (0.99, 0.5)] {
+            let baked = ramps(steepest);
+            let (bound, share) = (baked.texels_outside_circle(roughness), baked.texels_beyond_rim(roughness, 1.0));
+            // The strips leave out what lies 4.5 standard deviations to the far side: 3.4e-6.
+            assert!(f64::from(share) <= bound + 5e-6, "{steepest} {roughness}: {share} beyond, {bound} outside");
+        }
     }
 
     #[test]

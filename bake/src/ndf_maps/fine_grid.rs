@@ -7,6 +7,7 @@ use super::micro_normals::{self, TexelRect};
 use super::spline::add_scaled;
 use crate::normal_map::NormalMap;
 use glam::DVec2;
+use multiversion::multiversion;
 use std::ops::Range;
 
 /// Fine grid nodes per σ_r.
@@ -150,6 +151,7 @@ impl FineGrid {
 }
 
 /// Convolves with a Gaussian of `sigma` nodes, separably, cut at 4σ and normalised.
+#[multiversion(targets("x86_64+avx2", "x86_64+avx"))]
 fn gaussian_blur(input: &[f32], width: usize, height: usize, sigma: f64) -> Vec<f32> {
     let radius = (4.0 * sigma).ceil() as usize;
     if radius == 0 {

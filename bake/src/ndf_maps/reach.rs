@@ -82,11 +82,14 @@ impl LocalReach {
 
 /// Running sums along both axes.
 fn sum_up(values: &mut [i32], side: usize) {
-    for k in 0..values.len() {
-        let left = if k % side > 0 { values[k - 1] } else { 0 };
-        let above = if k >= side { values[k - side] } else { 0 };
-        let both = if k % side > 0 && k >= side { values[k - side - 1] } else { 0 };
-        values[k] += left + above - both;
+    let mut above = vec![0; side];
+    for row in values.chunks_exact_mut(side) {
+        let mut left = 0;
+        for (value, above) in row.iter_mut().zip(&mut above) {
+            left += *value;
+            *above += left;
+            *value = *above;
+        }
     }
 }
 

@@ -2,7 +2,8 @@
 //! of the uniform, blocks of density, owners of sub-regions.
 
 use super::baked::{BakedNdfMaps, BakedPlacement, Material};
-use super::{blocks, reach};
+use super::blocks::{self, BLOCK_BYTES};
+use super::reach;
 use crate::error::{BakeError, Result};
 use crate::pack_access::{bytes, names_with, parameters, records};
 use bytemuck::Pod;
@@ -14,12 +15,12 @@ use glint_formats::ndf_maps::{
 };
 use glint_formats::{Codec, FourCc, Pack, Resource, Section, vk_format};
 
-/// A table of elements of `T` as a section: whole rows, zeros at the end.
-fn table_section<T: Pod>(kind: FourCc, name: &str, format: u32, elements: &[T]) -> Section {
-    let row = TABLE_WIDTH as usize * size_of::<T>();
-    let mut payload = bytemuck::cast_slice(elements).to_vec();
-    payload.resize(payload.len().next_multiple_of(row).max(row), 0);
-    Section::texture(kind, name, table(format, elements.len() as u64), payload)
+/// A table of elements of `bytes` bytes each as a section: whole rows, zeros at the end.
+fn table_section(kind: FourCc, name: &str, format: u32, bytes: usize, mut elements: Vec<u8>) -> Section {
+    let count = elements.len() / bytes;
+    let row = TABLE_WIDTH as usize * bytes;
+    elements.resize(elements.len().next_multiple_of(row).max(row), 0);
+    Section::texture(kind, name, table(format, count as u64), elements)
 }
 
 /// The sections of one material under `name`, all compressed or none as `codec` says.
@@ -38,16 +39,17 @@ pub fn to_sections(name: &str, material: &Material, codec: Codec) -> Vec<Section
             ..Section::buffer(UNIFORM, name, &uniform_bytes(material, &header, &tiles))
         },
     ];
-    let elements: &[[u32; 4]] = bytemuck::cast_slice(&tiles);
     if header.few_tiles == 0 {
-        sections.push(table_section(TILES, name, vk_format::R32G32B32A32_UINT, elements));
+        // A tile is two elements.
+        let records = bytemuck::cast_slice(&tiles).to_vec();
+        sections.push(table_section(TILES, name, vk_format::R32G32B32A32_UINT, 16, records));
     }
-    sections.push(match &blocks {
-        Some(blocks) => table_section(DENSITY, name, vk_format::R32G32B32A32_UINT, &blocks.blocks),
+    sections.push(match blocks {
+        Some(blocks) => table_section(DENSITY, name, vk_format::R32G32B32A32_UINT, BLOCK_BYTES, blocks.payload),
         None => {
-            let mut words = maps.density.clone();
-            words.resize(words.len().next_multiple_of(4), 0);
-            table_section(DENSITY, name, vk_format::R32_UINT, &bytemuck::pod_collect_to_vec::<u8, u32>(&words))
+            let mut texels = maps.density.clone();
+            texels.resize(texels.len().next_multiple_of(4), 0);
+            table_section(DENSITY, name, vk_format::R32_UINT, 4, texels)
         }
     });
     let normals = bytemuck::cast_slice(&maps.normals).to_vec();

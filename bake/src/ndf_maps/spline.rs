@@ -2,6 +2,8 @@
 //!
 //! At equal error their texels may lie farther apart than those of bilinear interpolation, for nine reads instead of four.
 
+use multiversion::multiversion;
+
 /// The spline at distance `x` ≥ 0 from its centre, in node distances.
 fn spline_at(x: f32) -> f32 {
     if x < 0.5 {
@@ -59,42 +61,48 @@ impl Fit {
 
     /// Fits all lanes.
     pub fn solve(&self, samples: &[f32], lanes: usize) -> Vec<f32> {
-        let count = samples.len() / lanes;
-        let nodes = self.nodes();
-        let reach = self.taps.len() - 1;
-        let mut out = vec![0.0f32; nodes * lanes];
-        for k in 0..nodes {
-            let centre = k * self.step;
-            let (done, rest) = out.split_at_mut(k * lanes);
-            let row = &mut rest[..lanes];
-            for at in centre.saturating_sub(reach)..=(centre + reach).min(count - 1) {
-                add_scaled(row, &samples[at * lanes..(at + 1) * lanes], self.taps[at.abs_diff(centre)]);
-            }
-            let [reciprocal, first, second] = self.factor[k];
-            if k >= 1 {
-                add_scaled(row, &done[(k - 1) * lanes..], -first);
-            }
-            if k >= 2 {
-                add_scaled(row, &done[(k - 2) * lanes..(k - 1) * lanes], -second);
-            }
-            row.iter_mut().for_each(|v| *v *= reciprocal);
-        }
-        for k in (0..nodes).rev() {
-            let (head, tail) = out.split_at_mut((k + 1) * lanes);
-            let row = &mut head[k * lanes..];
-            if k + 1 < nodes {
-                add_scaled(row, &tail[..lanes], -self.factor[k + 1][1]);
-            }
-            if k + 2 < nodes {
-                add_scaled(row, &tail[lanes..2 * lanes], -self.factor[k + 2][2]);
-            }
-            row.iter_mut().for_each(|v| *v *= self.factor[k][0]);
-        }
-        out
+        solve(self, samples, lanes)
     }
 }
 
-/// target += factor · source, element by element.
+#[multiversion(targets("x86_64+avx2", "x86_64+avx"))]
+fn solve(fit: &Fit, samples: &[f32], lanes: usize) -> Vec<f32> {
+    let count = samples.len() / lanes;
+    let nodes = fit.nodes();
+    let reach = fit.taps.len() - 1;
+    let mut out = vec![0.0f32; nodes * lanes];
+    for k in 0..nodes {
+        let centre = k * fit.step;
+        let (done, rest) = out.split_at_mut(k * lanes);
+        let row = &mut rest[..lanes];
+        for at in centre.saturating_sub(reach)..=(centre + reach).min(count - 1) {
+            add_scaled(row, &samples[at * lanes..(at + 1) * lanes], fit.taps[at.abs_diff(centre)]);
+        }
+        let [reciprocal, first, second] = fit.factor[k];
+        if k >= 1 {
+            add_scaled(row, &done[(k - 1) * lanes..], -first);
+        }
+        if k >= 2 {
+            add_scaled(row, &done[(k - 2) * lanes..(k - 1) * lanes], -second);
+        }
+        row.iter_mut().for_each(|v| *v *= reciprocal);
+    }
+    for k in (0..nodes).rev() {
+        let (head, tail) = out.split_at_mut((k + 1) * lanes);
+        let row = &mut head[k * lanes..];
+        if k + 1 < nodes {
+            add_scaled(row, &tail[..lanes], -fit.factor[k + 1][1]);
+        }
+        if k + 2 < nodes {
+            add_scaled(row, &tail[lanes..2 * lanes], -fit.factor[k + 2][2]);
+        }
+        row.iter_mut().for_each(|v| *v *= fit.factor[k][0]);
+    }
+    out
+}
+
+/// target += factor · source, element by element; inlined, so that it has the vectors of its caller.
+#[inline(always)]
 pub(super) fn add_scaled(target: &mut [f32], source: &[f32], factor: f32) {
     for (t, s) in target.iter_mut().zip(source) {
         *t += factor * s;

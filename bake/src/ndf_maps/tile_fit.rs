@@ -5,7 +5,7 @@
 //! a sum over one lobe a texel), and values are fitted by least squares to what spline interpolation will reconstruct,
 //! with as few texels along each axis as the error asked for allows.
 
-use super::eval::{Taps, spline};
+use super::eval::spline;
 use super::fine_grid::{FineGrid, LobeNorm};
 use super::micro_normals::TexelRect;
 use super::spline::{Fit, add_scaled, spline_integral};
@@ -13,6 +13,7 @@ use crate::normal_map::NormalMap;
 use glam::DVec2;
 use glint_formats::ndf_maps::DensityStorage;
 use half::f16;
+use multiversion::multiversion;
 
 /// Finest and coarsest texel spacing tried, in fine nodes.
 const STEPS: (usize, usize) = (1, 9);
@@ -149,6 +150,7 @@ fn fit_splines(columns: &mut ColumnFits, steps: [usize; 2], storage: DensityStor
 }
 
 /// Encodes values relative to the largest and replaces them by what will be decoded.
+#[multiversion(targets("x86_64+avx2", "x86_64+avx"))]
 fn encode(values: &mut [f32], storage: DensityStorage) -> Vec<u8> {
     let peak = values.iter().fold(0.0f32, |a, b| a.max(*b)).max(f32::MIN_POSITIVE);
     let mut bytes = Vec::with_capacity(values.len() * storage.texel_bytes() as usize);
@@ -172,17 +174,21 @@ fn encode(values: &mut [f32], storage: DensityStorage) -> Vec<u8> {
 }
 
 /// E₁ of decoded values over the fine nodes inside the disk.
+#[multiversion(targets("x86_64+avx2", "x86_64+avx"))]
 fn spline_error(fine: &FineGrid, values: &[f32], width: usize, steps: [usize; 2], scale: f32) -> f64 {
     // Spread every row of values over the fine columns, then blend three such rows for every fine row.
-    let taps: Vec<Taps> = (0..fine.width).map(|i| spline(i as f32 / steps[0] as f32)).collect();
-    let mut spread = Vec::with_capacity(values.len() / width * fine.width);
+    let taps: Vec<(usize, [f32; 3])> = (0..fine.width)
+        .map(|i| spline(i as f32 / steps[0] as f32))
+        .map(|taps| ((taps.first + 1) as usize, taps.weights))
+        .collect();
+    let mut spread = vec![0.0f32; values.len() / width * fine.width];
     let mut padded = vec![0.0f32; width + 2];
-    for row in values.chunks_exact(width) {
+    for (row, spread) in values.chunks_exact(width).zip(spread.chunks_exact_mut(fine.width)) {
         padded[1..=width].copy_from_slice(row);
-        spread.extend(taps.iter().map(|t| {
-            let at = (t.first + 1) as usize;
-            t.weights[0] * padded[at] + t.weights[1] * padded[at + 1] + t.weights[2] * padded[at + 2]
-        }));
+        for (out, (at, weights)) in spread.iter_mut().zip(&taps) {
+            let three = &padded[*at..*at + 3];
+            *out = weights[0] * three[0] + weights[1] * three[1] + weights[2] * three[2];
+        }
     }
     let height = values.len() / width;
     let mut decoded = vec![0.0f32; fine.width];
@@ -206,7 +212,8 @@ fn spline_error(fine: &FineGrid, values: &[f32], width: usize, steps: [usize; 2]
     difference / total.max(f64::MIN_POSITIVE)
 }
 
-/// Σ|a − b| and Σb, in eight lanes.
+/// Σ|a − b| and Σb, in eight lanes; inlined, so that it has the vectors of its caller.
+#[inline(always)]
 fn difference_and_total(a: &[f32], b: &[f32]) -> (f32, f32) {
     let (mut differences, mut totals) = ([0.0f32; 8], [0.0f32; 8]);
     let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));

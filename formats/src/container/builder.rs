@@ -78,6 +78,7 @@ impl PackBuilder {
             entry.write(&mut out);
         }
         header::seal(&mut out);
+        out.reserve_exact((end as usize).saturating_sub(out.len()));
         for (entry, payload) in entries.iter().zip(&payloads) {
             out.resize(entry.offset as usize, 0);
             out.extend_from_slice(payload);
