@@ -36,6 +36,8 @@ mod generate;
 mod info;
 #[path = "cli/inputs_build.rs"]
 mod inputs_build;
+#[path = "cli/inputs_exr.rs"]
+mod inputs_exr;
 #[path = "cli/inputs_files.rs"]
 mod inputs_files;
 #[path = "cli/inputs_meaning.rs"]

@@ -11,7 +11,7 @@ use glint_bake_core::progress::Silent;
 #[test]
 fn a_noon_sun_keeps_to_the_error_asked_in_every_mip() {
     let Some(data) = folder::data() else { return };
-    let loaded = load_environment(&data.join("hdri/noon_grass_1k.hdr"), 1 << 30).unwrap();
+    let loaded = load_environment(&data.join("hdri/noon_grass_1k.hdr"), None, 1 << 30).unwrap();
     let options = EnvironmentOptions { measured_texels: 0, ..EnvironmentOptions::default() };
     let environment = bake(&loaded.image, &options, &Silent).unwrap();
     let params = &environment.params;

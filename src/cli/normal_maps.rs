@@ -32,6 +32,9 @@ pub struct InputFlags {
     /// Read height maps; SCALE is the height of white in texels
     #[arg(long, value_name = "SCALE", value_parser = values::non_zero, allow_negative_numbers = true, help_heading = "Input")]
     pub height: Option<f32>,
+    /// Layer of EXR maps to read, by name; '' is the unnamed one [default: the one that fits]
+    #[arg(long, value_name = "NAME", help_heading = "Input")]
+    pub layer: Option<String>,
     /// How stored values are decoded: as the data and the file's tag say, not at all, or by the sRGB curve
     #[arg(long, value_name = "SPACE", default_value = "auto", help_heading = "Input")]
     pub colour_space: ColourSpaceArg,
@@ -138,6 +141,7 @@ impl InputFlags {
             height: self.height,
             crop: self.crop,
             colour_space: self.colour_space.or_linear(self.assume_linear),
+            layer: self.layer.clone(),
             max_memory,
         }
     }
@@ -153,6 +157,9 @@ impl InputFlags {
         }
         if let Some(scale) = self.height {
             options.push("height", scale);
+        }
+        if let Some(layer) = &self.layer {
+            options.push("layer", layer);
         }
         match self.colour_space.or_linear(self.assume_linear) {
             ColourSpace::Auto => {}

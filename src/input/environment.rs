@@ -3,7 +3,7 @@
 //! Values are taken as they are: an exposure that a Radiance header names is not undone, as in most programs, and noted.
 
 use super::error::InputError;
-use super::exr_file;
+use super::exr;
 use super::format::no_environment;
 use super::guard::guarded;
 use super::limits::{check_size, digest, from_bake, read};
@@ -28,11 +28,13 @@ pub struct LoadedEnvironment {
 
 /// Loads and validates an equirectangular environment.
 ///
+/// `layer` names the layer of an EXR file to read; when not given, the one of colours is found.
+///
 /// # Errors
 /// [`InputError`]; each kind has its own exit code, and the message names the file, what was expected and found, and
 /// what to do. Pixels that are NaN or infinite are named.
-pub fn load_environment(path: &Path, max_memory: u64) -> Result<LoadedEnvironment, InputError> {
-    let options = InputOptions { max_memory, ..InputOptions::default() };
+pub fn load_environment(path: &Path, layer: Option<&str>, max_memory: u64) -> Result<LoadedEnvironment, InputError> {
+    let options = InputOptions { layer: layer.map(str::to_owned), max_memory, ..InputOptions::default() };
     let bytes = read(path, max_memory)?;
     let mut warnings = Vec::new();
     let (width, height, pixels) = guarded(path, || decode(path, &bytes, &options, &mut warnings))?;
@@ -53,8 +55,9 @@ fn decode(
     warnings: &mut Vec<String>,
 ) -> Result<(u32, u32, Vec<[f32; 3]>), InputError> {
     if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
-        exr_file::decode_radiance(path, bytes, options)
+        exr::decode_radiance(path, bytes, options, warnings)
     } else if bytes.starts_with(b"#?") {
+        options.check_has_layers(path, "Radiance HDR")?;
         decode_hdr(path, bytes, options, warnings)
     } else {
         Err(no_environment(path, bytes))

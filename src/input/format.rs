@@ -17,6 +17,11 @@ pub(super) enum Format {
 }
 
 impl Format {
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        self.named().0
+    }
+
     /// Its name and the extensions that promise it.
     fn named(self) -> (&'static str, &'static [&'static str]) {
         match self {

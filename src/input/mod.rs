@@ -4,7 +4,7 @@ mod chunks;
 mod colour_tag;
 pub mod environment;
 mod error;
-mod exr_file;
+mod exr;
 mod foreign;
 mod format;
 mod guard;

@@ -13,7 +13,7 @@ use super::guard::guarded;
 use super::limits::{digest, from_bake, read};
 use super::options::{Channels, Crop, InputOptions};
 use super::pixels::Pixels;
-use super::{exr_file, meaning, raster, tiff_file};
+use super::{exr, meaning, raster, tiff_file};
 use glint_bake_core::normal_map::{GreenAxis, NormalMap, NormalOptions, NormalReport};
 use glint_formats::provenance::InputDigest;
 use image::ImageFormat;
@@ -75,9 +75,14 @@ fn decode(path: &Path, bytes: &[u8], options: &InputOptions) -> Result<(Pixels, 
     let format = format::detect(path, bytes)?;
     let mut notes: Vec<String> = format::extension_note(path, format).into_iter().collect();
     let pixels = match format {
-        Format::Exr => exr_file::decode(path, bytes, options)?,
-        Format::Raster(ImageFormat::Tiff) => tiff_file::decode(path, bytes, options, &mut notes)?,
-        Format::Raster(raster) => raster::decode(path, bytes, raster, options, &mut notes)?,
+        Format::Exr => exr::decode(path, bytes, options, &mut notes)?,
+        Format::Raster(raster) => {
+            options.check_has_layers(path, format.name())?;
+            match raster {
+                ImageFormat::Tiff => tiff_file::decode(path, bytes, options, &mut notes)?,
+                raster => raster::decode(path, bytes, raster, options, &mut notes)?,
+            }
+        }
     };
     Ok((pixels.shown(), notes))
 }

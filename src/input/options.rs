@@ -1,7 +1,9 @@
 //! How a file is to be understood.
 
+use super::error::InputError;
 use glint_bake_core::normal_map::GreenAxis;
 use glint_formats::Wrap;
+use std::path::Path;
 
 /// Default of [`InputOptions::max_memory`]: 4 GiB.
 pub const DEFAULT_MAX_MEMORY: u64 = 4 << 30;
@@ -67,7 +69,7 @@ pub struct Crop {
 }
 
 /// How a file is to be understood.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct InputOptions {
     /// Which way green points.
     pub y: GreenAxis,
@@ -81,8 +83,23 @@ pub struct InputOptions {
     pub crop: Option<Crop>,
     /// How stored values are to be decoded.
     pub colour_space: ColourSpace,
+    /// The layer of an EXR file to read; empty for the unnamed one. When not given, the layer that fits is found.
+    pub layer: Option<String>,
     /// Most bytes to hold for this file while loading.
     pub max_memory: u64,
+}
+
+impl InputOptions {
+    /// Refuses to choose a layer of a file whose format has none.
+    pub(super) fn check_has_layers(&self, path: &Path, format: &str) -> Result<(), InputError> {
+        match &self.layer {
+            None => Ok(()),
+            Some(layer) => Err(InputError::bad(
+                path,
+                format!("--layer asks for layer {layer:?} of an EXR file, and this is {format}; leave --layer out"),
+            )),
+        }
+    }
 }
 
 impl Default for InputOptions {
@@ -94,6 +111,7 @@ impl Default for InputOptions {
             height: None,
             crop: None,
             colour_space: ColourSpace::Auto,
+            layer: None,
             max_memory: DEFAULT_MAX_MEMORY,
         }
     }

@@ -113,12 +113,12 @@ impl Settings {
 
     /// The same, read with these options.
     pub fn normal_map_as(&self, file: &str, options: &InputOptions) -> Result<NormalMap, Failure> {
-        let options = InputOptions { colour_space: ColourSpace::Linear, ..*options };
+        let options = InputOptions { colour_space: ColourSpace::Linear, ..options.clone() };
         Ok(load_normal_map(&self.data(file)?, &options)?.map)
     }
 
     /// An environment.
     pub fn environment(&self, path: &Path) -> Result<EnvironmentImage, Failure> {
-        Ok(load_environment(path, MAX_MEMORY)?.image)
+        Ok(load_environment(path, None, MAX_MEMORY)?.image)
     }
 }

@@ -483,9 +483,9 @@ fn heights_in_every_grey_form() {
         ("normals.png", png(leather(32, 32, 1)), &scale, 4, "coloured"),
     ]);
     let options = InputOptions { height: Some(3.0), ..InputOptions::default() };
-    let plain = load(&folder.path().join("grey.png"), options).map;
+    let plain = load(&folder.path().join("grey.png"), options.clone()).map;
     for name in ["grey_alpha.png", "colour.png", "coloured.png", "tagged.png"] {
-        assert_eq!(load(&folder.path().join(name), options).map, plain, "{name}");
+        assert_eq!(load(&folder.path().join(name), options.clone()).map, plain, "{name}");
     }
     // Floats in units of their own.
     let metres = |x: usize, y: usize| height(x as u32, y as u32) as f32 / 255.0 * 40.0 - 20.0;

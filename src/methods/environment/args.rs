@@ -77,6 +77,10 @@ pub struct Args {
     #[arg(long, help_heading = "Bake")]
     pub compress: bool,
 
+    /// Layer of an EXR image to read, by name; '' is the unnamed one [default: the one of colours]
+    #[arg(long, value_name = "NAME", help_heading = "Input")]
+    pub layer: Option<String>,
+
     #[command(flatten)]
     pub run: RunFlags,
 }
@@ -170,6 +174,9 @@ impl Args {
         options.push("max-error", self.max_error);
         options.push_choice("kernel", &self.kernel);
         options.push("measure", self.measure);
+        if let Some(layer) = &self.layer {
+            options.push("layer", layer);
+        }
         options
     }
 }

@@ -28,7 +28,7 @@ pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Fai
     let delivery = args.delivery();
     delivery.check()?;
     delivery.check_size(options.texture_bytes(), SMALLER)?;
-    let loaded = load_environment(&args.input, args.run.max_memory)?;
+    let loaded = load_environment(&args.input, args.layer.as_deref(), args.run.max_memory)?;
     for warning in &loaded.warnings {
         terminal.warn(&format!("{}: {warning}", args.input.display()));
     }
@@ -79,7 +79,7 @@ fn warn_of_rounding(params: &EnvironmentParams, input: &Path, terminal: Terminal
 /// A bake that is only looked at: image and environment, and the bytes that the pack would have.
 pub fn draft(args: &Args) -> Result<((EnvironmentImage, Environment), u64), Failure> {
     let options = checked_options(args)?;
-    let loaded = load_environment(&args.input, args.run.max_memory)?;
+    let loaded = load_environment(&args.input, args.layer.as_deref(), args.run.max_memory)?;
     let environment =
         bake_environment(&loaded.image, &options, &Silent).map_err(|error| Failure::bake(&args.input, &error))?;
     let bytes = sealed(args, &loaded, &environment)?.len() as u64;
