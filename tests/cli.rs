@@ -45,6 +45,8 @@ mod inputs_meaning;
 #[cfg(feature = "view")]
 #[path = "cli/inputs_mesh.rs"]
 mod inputs_mesh;
+#[path = "cli/inputs_radiance.rs"]
+mod inputs_radiance;
 #[path = "cli/inputs_raster.rs"]
 mod inputs_raster;
 #[path = "cli/lobes.rs"]

@@ -1,18 +1,14 @@
 //! From a file on disk to a validated environment: Radiance HDR or OpenEXR, linear radiance, equirectangular.
-//!
-//! Values are taken as they are: an exposure that a Radiance header names is not undone, as in most programs, and noted.
 
 use super::error::InputError;
 use super::exr;
 use super::format::no_environment;
 use super::guard::guarded;
-use super::limits::{check_size, digest, from_bake, read};
+use super::limits::{digest, from_bake, read};
 use super::options::InputOptions;
+use super::radiance;
 use glint_bake_core::environment::EnvironmentImage;
 use glint_formats::provenance::InputDigest;
-use image::codecs::hdr::HdrDecoder;
-use image::{ImageDecoder, ImageError};
-use std::io::Cursor;
 use std::path::Path;
 
 /// An environment with where it came from and what was noticed.
@@ -48,7 +44,7 @@ pub fn load_environment(path: &Path, layer: Option<&str>, max_memory: u64) -> Re
 }
 
 /// Pixels of any format.
-fn decode(
+pub(super) fn decode(
     path: &Path,
     bytes: &[u8],
     options: &InputOptions,
@@ -56,47 +52,10 @@ fn decode(
 ) -> Result<(u32, u32, Vec<[f32; 3]>), InputError> {
     if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
         exr::decode_radiance(path, bytes, options, warnings)
-    } else if bytes.starts_with(b"#?") {
+    } else if bytes.starts_with(radiance::MAGIC) {
         options.check_has_layers(path, "Radiance HDR")?;
-        decode_hdr(path, bytes, options, warnings)
+        radiance::decode(path, bytes, options.max_memory, warnings)
     } else {
         Err(no_environment(path, bytes))
-    }
-}
-
-fn decode_hdr(
-    path: &Path,
-    bytes: &[u8],
-    options: &InputOptions,
-    notes: &mut Vec<String>,
-) -> Result<(u32, u32, Vec<[f32; 3]>), InputError> {
-    let decoder = HdrDecoder::new(Cursor::new(bytes)).map_err(|e| from_image(path, e))?;
-    let meta = decoder.metadata();
-    let size = (u64::from(meta.width), u64::from(meta.height));
-    check_size(path, size, 16, options.max_memory)?;
-    // Run lengths stand for at most 127 values in two bytes, so a short file cannot hold many pixels.
-    if size.0 * size.1 / 128 > bytes.len() as u64 {
-        return Err(InputError::bad(
-            path,
-            "the file is cut off: it ends before the image does; copy or export it again",
-        ));
-    }
-    if let Some(exposure) = meta.exposure.filter(|exposure| *exposure != 1.0) {
-        notes.push(format!("the header names an exposure of {exposure}; radiance is taken as it is stored"));
-    }
-    let mut raw = vec![0; decoder.total_bytes() as usize];
-    decoder.read_image(&mut raw).map_err(|e| from_image(path, e))?;
-    let value = |b: &[u8]| f32::from_ne_bytes([b[0], b[1], b[2], b[3]]);
-    let pixels = raw.chunks_exact(12).map(|p| [value(&p[..4]), value(&p[4..8]), value(&p[8..])]).collect();
-    Ok((meta.width, meta.height, pixels))
-}
-
-fn from_image(path: &Path, error: ImageError) -> InputError {
-    match error {
-        ImageError::Unsupported(e) => InputError::unsupported(path, format!("{e}; export it again")),
-        ImageError::IoError(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => {
-            InputError::bad(path, "the file is cut off: it ends before the image does; copy or export it again")
-        }
-        other => InputError::bad(path, format!("the HDR image is damaged: {other}; copy or export it again")),
     }
 }

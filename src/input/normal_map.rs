@@ -71,7 +71,7 @@ pub fn load_normal_map(path: &Path, options: &InputOptions) -> Result<LoadedMap,
 }
 
 /// Pixels of any format as they are shown, and the notes of reading them.
-fn decode(path: &Path, bytes: &[u8], options: &InputOptions) -> Result<(Pixels, Vec<String>), InputError> {
+pub(super) fn decode(path: &Path, bytes: &[u8], options: &InputOptions) -> Result<(Pixels, Vec<String>), InputError> {
     let format = format::detect(path, bytes)?;
     let mut notes: Vec<String> = format::extension_note(path, format).into_iter().collect();
     let pixels = match format {

@@ -19,11 +19,13 @@ const D65: [f64; 2] = [0.3127, 0.3290];
 /// White of the ACES spaces.
 const ACES_WHITE: [f64; 2] = [0.32168, 0.33767];
 
+const EQUAL_ENERGY: [f64; 2] = [1.0 / 3.0, 1.0 / 3.0];
+
 /// Two chromaticities count as equal up to this: files round them to 3 to 5 digits.
 const SAME: f64 = 2e-3;
 
 /// Spaces that have a name.
-const NAMED: [(&str, Primaries); 6] = [
+const NAMED: [(&str, Primaries); 7] = [
     ("Rec. 709", Primaries::REC_709),
     ("ACES AP0", Primaries { red: [0.7347, 0.2653], green: [0.0, 1.0], blue: [0.0001, -0.077], white: ACES_WHITE }),
     (
@@ -32,12 +34,19 @@ const NAMED: [(&str, Primaries); 6] = [
     ),
     ("Display P3", Primaries { red: [0.68, 0.32], green: [0.265, 0.69], blue: [0.15, 0.06], white: D65 }),
     ("Rec. 2020", Primaries { red: [0.708, 0.292], green: [0.17, 0.797], blue: [0.131, 0.046], white: D65 }),
-    ("CIE XYZ", Primaries { red: [1.0, 0.0], green: [0.0, 1.0], blue: [0.0, 0.0], white: [1.0 / 3.0, 1.0 / 3.0] }),
+    ("CIE XYZ", Primaries::XYZ),
+    (
+        "Radiance's own primaries",
+        Primaries { red: [0.64, 0.33], green: [0.29, 0.6], blue: [0.15, 0.06], white: EQUAL_ENERGY },
+    ),
 ];
 
 impl Primaries {
     /// Rec. 709 and sRGB.
     pub const REC_709: Primaries = Primaries { red: [0.64, 0.33], green: [0.3, 0.6], blue: [0.15, 0.06], white: D65 };
+
+    /// CIE XYZ as if it were RGB: white is where X, Y and Z are equal.
+    pub const XYZ: Primaries = Primaries { red: [1.0, 0.0], green: [0.0, 1.0], blue: [0.0, 0.0], white: EQUAL_ENERGY };
 
     /// Whether colours are those of Rec. 709 as they are.
     pub fn is_rec_709(&self) -> bool {

@@ -4,18 +4,23 @@
 
 use super::albedo;
 use super::baked::Environment;
-use super::cube::{Resampling, texel_solid_angle_sr};
+use super::cube::{resampled_row, texel_solid_angle_sr};
 use super::image::{EnvironmentImage, luminance};
 use super::kernel::{Lobe, roughness_of_mips};
-use super::levels::{RadianceHistogram, fewest, log_uniform, optimal, shares};
+use super::levels::{RadianceHistogram, fewest, log_uniform, optimal};
 use super::options::{EnvironmentOptions, LevelCount};
 use super::prefilter::filter_mip;
 use super::quality;
 use super::rounding::{self, Mip, half_bits, radiance_scale, rounding_error, shared_exponent};
-use super::tree::{BASE_CHANNELS, Tree};
+use super::source::{BASE_CHANNELS, Source};
+use super::tree::Tree;
 use crate::error::{BakeError, Result};
 use crate::progress::Progress;
 use glint_formats::environment::{EnvironmentParams, LevelChoice, MeasuredError};
+use rayon::prelude::*;
+
+/// Rows of texels of the first mip that are held with all their channels.
+const ROWS_AT_ONCE: usize = 64;
 
 /// Bakes an environment of an image. Stages of `progress`: `filter`, in texels, and `measure`, in mips.
 ///
@@ -42,17 +47,19 @@ pub fn bake(image: &EnvironmentImage, options: &EnvironmentOptions, progress: &d
     };
     let mips = filtered_mips(image, options, &params, progress);
     choose_scale(image, &mips, &mut params);
+    params.measured.energy = energy_error(image, &mips.light[0]);
+    let Mips { light, indicators, colours } = mips;
     let mut environment = Environment {
         uniform: params.uniform(),
         params,
         radiance: Vec::new(),
-        indicators: Vec::new(),
-        colours: Vec::new(),
+        indicators,
+        colours,
         albedo: Vec::new(),
     };
-    round(&mips, &mut environment);
-    environment.params.measured.energy = energy_error(image, &mips.texels[0], mips.channels);
-    drop(mips);
+    for texels in light {
+        environment.radiance.extend(stored_radiance(&texels, environment.params.radiance_scale));
+    }
     environment.albedo = albedo::table()
         .into_iter()
         .flat_map(|areas| [areas.scale, areas.bias, areas.reflecting, areas.whole])
@@ -78,19 +85,21 @@ fn choose_levels(image: &EnvironmentImage, options: &EnvironmentOptions) -> (Vec
     }
 }
 
-/// All mips before rounding.
+/// All mips, of which only radiance is yet to be rounded: its factor depends on all of them.
 struct Mips {
-    /// Numbers a texel: red, green, blue, squared luminance, indicators of levels from 1 on, their light by colour.
-    channels: usize,
-    /// One entry a mip.
-    texels: Vec<Vec<f64>>,
+    /// [`BASE_CHANNELS`] numbers a texel: red, green, blue, squared luminance. One entry a mip.
+    light: Vec<Vec<f64>>,
+    /// Rounded indicators in the order of the pack.
+    indicators: Vec<u16>,
+    /// Rounded colours of levels in the order of the pack.
+    colours: Vec<u32>,
 }
 
 /// Sets the factor between stored and true radiance, and records what rounding then costs.
 fn choose_scale(image: &EnvironmentImage, mips: &Mips, params: &mut EnvironmentParams) {
-    let channels = mips.channels;
+    let channels = BASE_CHANNELS;
     let of = |(mip, texels)| Mip { texels, channels, max_error: quality::allowed_error(params, mip) };
-    let all: Vec<Mip<'_>> = mips.texels.iter().map(Vec::as_slice).enumerate().map(of).collect();
+    let all: Vec<Mip<'_>> = mips.light.iter().map(Vec::as_slice).enumerate().map(of).collect();
     let scale = radiance_scale(image, &all);
     let mean = luminance(image.mean());
     let error = |mip: &Mip<'_>| if mean > 0.0 { rounding_error(mip, scale) / mean } else { 0.0 };
@@ -104,106 +113,104 @@ fn filtered_mips(
     params: &EnvironmentParams,
     progress: &dyn Progress,
 ) -> Mips {
-    let more = params.levels.len() - 1;
-    let extra = more * if params.coloured { 4 } else { 1 };
     let sizes: Vec<u32> = (0..params.mips()).map(|mip| params.face_size >> mip).collect();
     let texels = sizes.iter().map(|size| 6 * u64::from(size * size)).sum();
     progress.begin("filter", texels);
-    let all = |image: &EnvironmentImage| extra_channels(image, params, extra);
-    let own = all(image);
-    let tree = match options.division(image) {
-        1 => Tree::new(image, extra, &own, more > 0),
-        parts => {
-            let fine = image.divided(parts);
-            Tree::new(&fine, extra, &all(&fine), more > 0)
-        }
-    };
-    let channels = tree.channels;
-    let mut mips = Mips { channels, texels: vec![first_mip(image, params.face_size, &own, extra, channels)] };
-    drop(own);
+    let source = Source::new(image, &params.levels, params.coloured);
+    let mut mips = Mips { light: Vec::new(), indicators: Vec::new(), colours: Vec::new() };
+    let mut first = RoundedMip::new(params, sizes[0]);
+    for rows in (0..6 * sizes[0]).collect::<Vec<u32>>().chunks(ROWS_AT_ONCE) {
+        let texels: Vec<Vec<f64>> = rows.par_iter().map(|row| first_mip_row(image, sizes[0], *row, &source)).collect();
+        texels.iter().for_each(|row| first.add(params, source.channels, row));
+    }
+    mips.add(first);
     progress.advance(6 * u64::from(params.face_size).pow(2));
+    let tree = Tree::new(source.divided(options.division(image)));
     for (size, alpha) in sizes.iter().zip(&params.roughness).skip(1) {
         let lobe = Lobe::new(params.kernel, *alpha);
-        mips.texels.push(filter_mip(&tree, &lobe, *size, options.max_error, progress));
+        let mut mip = RoundedMip::new(params, *size);
+        mip.add(params, source.channels, &filter_mip(&tree, &lobe, *size, options.max_error, progress));
+        mips.add(mip);
     }
     progress.end();
     mips
 }
 
-/// Indicators of levels from 1 on, then, where levels have colours, R, G and B of each level's light.
-fn extra_channels(image: &EnvironmentImage, params: &EnvironmentParams, extra: usize) -> Vec<f32> {
-    let mut all = vec![0.0; image.pixels.len() * extra];
-    let more = params.levels.len() - 1;
-    if more == 0 {
-        return all;
+/// A row of means over texels of the first mip, which is the source itself seen through a cube.
+fn first_mip_row(image: &EnvironmentImage, size: u32, row: u32, source: &Source<'_>) -> Vec<f64> {
+    resampled_row(image, size, row, source.channels, |x, y, out| source.values(x, y, out))
+}
+
+impl Mips {
+    fn add(&mut self, mip: RoundedMip) {
+        self.light.push(mip.light);
+        self.indicators.extend(mip.indicators);
+        self.colours.extend(mip.colours);
     }
-    for (pixel, out) in all.chunks_exact_mut(extra).enumerate() {
-        let l = image.luminance(pixel);
-        shares(&params.levels, l, &mut out[..more]);
-        if params.coloured && l > 0.0 {
-            for k in 0..more {
-                for c in 0..3 {
-                    let colour = f64::from(image.pixels[pixel][c]) / l;
-                    out[more + 3 * k + c] = (f64::from(out[k]) * colour) as f32;
+}
+
+/// One mip, texel after texel.
+struct RoundedMip {
+    /// Texels of the whole mip.
+    count: usize,
+    light: Vec<f64>,
+    indicators: Vec<u16>,
+    colours: Vec<u32>,
+}
+
+impl RoundedMip {
+    fn new(params: &EnvironmentParams, size: u32) -> RoundedMip {
+        let count = 6 * (size as usize).pow(2);
+        let colours = if params.coloured { (params.levels.len() - 1) * count } else { 0 };
+        RoundedMip {
+            count,
+            light: Vec::with_capacity(count * BASE_CHANNELS),
+            indicators: vec![0; params.indicator_layers() as usize * count * 4],
+            colours: vec![0; colours],
+        }
+    }
+
+    /// Adds the next texels, of `channels` numbers each.
+    fn add(&mut self, params: &EnvironmentParams, channels: usize, texels: &[f64]) {
+        let more = params.levels.len() - 1;
+        for texel in texels.chunks_exact(channels) {
+            let k = self.light.len() / BASE_CHANNELS;
+            self.light.extend(&texel[..BASE_CHANNELS]);
+            let shares = &texel[BASE_CHANNELS..BASE_CHANNELS + more];
+            // Blocks taken as points may give a few 1e-4 more than the whole.
+            let whole = shares.iter().sum::<f64>().max(1.0);
+            let shares: Vec<f64> = shares.iter().map(|share| share.max(0.0) / whole).collect();
+            for (i, bits) in rounding::indicators(&shares).into_iter().enumerate() {
+                self.indicators[((i / 4) * self.count + k) * 4 + i % 4] = bits;
+            }
+            if params.coloured {
+                for i in 0..more {
+                    let light = &texel[BASE_CHANNELS + more + 3 * i..][..3];
+                    self.colours[i * self.count + k] = shared_exponent(unit_luminance([light[0], light[1], light[2]]));
                 }
             }
         }
     }
-    all
-}
-
-/// Means over the texels of the first mip, which is the source itself seen through a cube.
-fn first_mip(image: &EnvironmentImage, size: u32, extra: &[f32], extra_count: usize, channels: usize) -> Vec<f64> {
-    let mut pixels = vec![0.0f32; image.pixels.len() * channels];
-    for (pixel, out) in pixels.chunks_exact_mut(channels).enumerate() {
-        out[..3].copy_from_slice(&image.pixels[pixel]);
-        out[3] = image.luminance(pixel).powi(2) as f32;
-        out[BASE_CHANNELS..BASE_CHANNELS + extra_count].copy_from_slice(&extra[pixel * extra_count..][..extra_count]);
-    }
-    Resampling::new(image, size).apply(channels, &pixels)
 }
 
 /// |luminance over all texels of the first mip by solid angle, over the source's − 1|.
-fn energy_error(image: &EnvironmentImage, texels: &[f64], channels: usize) -> f64 {
-    let size = ((texels.len() / channels / 6) as f64).sqrt() as u32;
+fn energy_error(image: &EnvironmentImage, texels: &[f64]) -> f64 {
+    let size = ((texels.len() / BASE_CHANNELS / 6) as f64).sqrt() as u32;
     let whole = luminance(image.mean()) * 4.0 * std::f64::consts::PI;
     let mut sum = 0.0;
-    for (k, texel) in texels.chunks_exact(channels).enumerate() {
+    for (k, texel) in texels.chunks_exact(BASE_CHANNELS).enumerate() {
         let k = k as u32 % (size * size);
         sum += luminance([texel[0], texel[1], texel[2]]) * texel_solid_angle_sr(k % size, k / size, size);
     }
     if whole > 0.0 { (sum / whole - 1.0).abs() } else { sum }
 }
 
-/// Rounds all mips into the textures.
-fn round(mips: &Mips, environment: &mut Environment) {
-    let params = &environment.params;
-    let more = params.levels.len() - 1;
-    let layers = params.indicator_layers() as usize;
-    for texels in &mips.texels {
-        let count = texels.len() / mips.channels;
-        let mut indicators = vec![0u16; layers * count * 4];
-        let mut colours = vec![0u32; if params.coloured { more * count } else { 0 }];
-        for (k, texel) in texels.chunks_exact(mips.channels).enumerate() {
-            let rgba = [texel[0], texel[1], texel[2], texel[3].max(0.0).sqrt()];
-            environment.radiance.extend(rgba.map(|value| half_bits(value / params.radiance_scale)));
-            let shares = &texel[BASE_CHANNELS..BASE_CHANNELS + more];
-            // Blocks taken as points may give a few 1e-4 more than the whole.
-            let whole = shares.iter().sum::<f64>().max(1.0);
-            let shares: Vec<f64> = shares.iter().map(|share| share.max(0.0) / whole).collect();
-            for (i, bits) in rounding::indicators(&shares).into_iter().enumerate() {
-                indicators[((i / 4) * count + k) * 4 + i % 4] = bits;
-            }
-            if params.coloured {
-                for i in 0..more {
-                    let light = &texel[BASE_CHANNELS + more + 3 * i..][..3];
-                    colours[i * count + k] = shared_exponent(unit_luminance([light[0], light[1], light[2]]));
-                }
-            }
-        }
-        environment.indicators.extend(indicators);
-        environment.colours.extend(colours);
-    }
+/// Half floats of radiance and root mean square luminance over `scale`.
+fn stored_radiance(texels: &[f64], scale: f64) -> impl Iterator<Item = u16> {
+    texels.chunks_exact(BASE_CHANNELS).flat_map(move |texel| {
+        let rgba = [texel[0], texel[1], texel[2], texel[3].max(0.0).sqrt()];
+        rgba.map(|value| half_bits(value / scale))
+    })
 }
 
 /// A colour scaled to luminance 1; white where there is no light.
@@ -234,7 +241,6 @@ mod tests {
     use crate::environment::reference::texel_mean;
     use crate::progress::Silent;
     use half::f16;
-    use rayon::prelude::*;
 
     /// Sky, ground, some texture, and a sun of a few pixels that is `range` times as bright.
     fn sunny(width: u32, height: u32, range: f32) -> EnvironmentImage {
@@ -271,7 +277,7 @@ mod tests {
             assert_eq!(f64::from(scale as f32), scale);
             let mean = luminance(image.mean());
             let rounding = |scale: f64, mip: usize| {
-                let texels = exact.texels[mip].chunks_exact(exact.channels);
+                let texels = exact.light[mip].chunks_exact(BASE_CHANNELS);
                 let count = texels.len() as f64;
                 let squares = texels.map(|texel| {
                     let stored = |value: f64| f16::from_f32((value / scale) as f32).to_f64() * scale;
@@ -295,8 +301,12 @@ mod tests {
     fn the_first_mip_is_the_mean_over_every_texel() {
         // Pixels that fit no texel, some of them a million times as bright.
         let (image, size) = (sunny(101, 51, 1e6), 16);
-        let pixels: Vec<f32> = image.pixels.iter().flatten().copied().collect();
-        let texels = Resampling::new(&image, size).apply(3, &pixels);
+        let row = |row| {
+            resampled_row(&image, size, row, 3, |x, y, out| {
+                out.copy_from_slice(&image.pixels[(y * image.width + x) as usize]);
+            })
+        };
+        let texels: Vec<f64> = (0..6 * size).flat_map(row).collect();
         // The reference's lines leave some 1e-4 where a bright edge runs nearly along them.
         let error = |(k, texel): (u32, &[f64])| {
             let exact = texel_mean(&image, (k / (size * size)) as usize, k % size, k / size % size, size, 512);

@@ -11,7 +11,6 @@
 
 use super::image::EnvironmentImage;
 use glam::DVec3;
-use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Nodes and weights of Gauss quadrature on (0, 1).
@@ -62,80 +61,45 @@ pub fn texel_solid_angle_sr(i: u32, j: u32, size: u32) -> f64 {
     corner(s1, t1) - corner(s0, t1) - corner(s1, t0) + corner(s0, t0)
 }
 
-/// How the texels of a cube are made of pixels: for each texel, which pixels by which share.
-pub(super) struct Resampling {
+/// Texels of row `row` of the rows of all faces of `size` texels (even), one face after the other: of each the means of
+/// `channels` numbers, which `values` gives by column and row of a pixel.
+pub(super) fn resampled_row(
+    image: &EnvironmentImage,
     size: u32,
-    /// One entry a row of texels of a face, in order.
-    rows: Vec<Row>,
-}
-
-/// One row of texels.
-struct Row {
-    /// End of each texel's pieces.
-    ends: Vec<usize>,
-    /// Pixel and share; the shares of a texel add up to 1.
-    pieces: Vec<(u32, f32)>,
-}
-
-impl Resampling {
-    /// The resampling of `image` to faces of `size` texels (even).
-    pub(super) fn new(image: &EnvironmentImage, size: u32) -> Resampling {
-        let rows = (0..6 * size).into_par_iter().map(|row| Row::new(image, (row / size) as usize, row % size, size));
-        Resampling { size, rows: rows.collect() }
-    }
-
-    /// Texels of all faces, of `channels` interleaved numbers a pixel.
-    pub(super) fn apply(&self, channels: usize, pixels: &[f32]) -> Vec<f64> {
-        let mut texels = vec![0.0; self.rows.len() * self.size as usize * channels];
-        texels.par_chunks_mut(self.size as usize * channels).zip(&self.rows).for_each(|(texels, row)| {
-            let mut begin = 0;
-            for (texel, end) in texels.chunks_exact_mut(channels).zip(&row.ends) {
-                for &(pixel, share) in &row.pieces[begin..*end] {
-                    let values = &pixels[pixel as usize * channels..][..channels];
-                    for c in 0..channels {
-                        texel[c] += f64::from(share) * f64::from(values[c]);
-                    }
-                }
-                begin = *end;
-            }
-        });
-        texels
-    }
-}
-
-impl Row {
-    fn new(image: &EnvironmentImage, face: usize, j: u32, size: u32) -> Row {
-        let mut row = Row { ends: Vec::new(), pieces: Vec::new() };
-        let mut texel = Vec::new();
-        for i in 0..size {
-            texel.clear();
-            let square = ([edge(i, size), edge(i + 1, size)], [edge(j, size), edge(j + 1, size)]);
-            if face == 2 || face == 3 {
-                add_polar(image, face == 2, square, &mut texel);
-            } else {
-                add_side(image, face, square, &mut texel);
-            }
-            row.add(&mut texel);
+    row: u32,
+    channels: usize,
+    values: impl Fn(u32, u32, &mut [f32]),
+) -> Vec<f64> {
+    let (face, j) = ((row / size) as usize, row % size);
+    let mut texels = vec![0.0; size as usize * channels];
+    let mut pieces = Vec::new();
+    let mut of_pixel = vec![0.0; channels];
+    for (i, texel) in (0..size).zip(texels.chunks_exact_mut(channels)) {
+        pieces.clear();
+        let square = ([edge(i, size), edge(i + 1, size)], [edge(j, size), edge(j + 1, size)]);
+        if face == 2 || face == 3 {
+            add_polar(image, face == 2, square, &mut pieces);
+        } else {
+            add_side(image, face, square, &mut pieces);
         }
-        row
-    }
-
-    /// Adds a texel: one piece a pixel, shares of 1.
-    fn add(&mut self, texel: &mut [(u32, f64)]) {
-        texel.sort_unstable_by_key(|piece| piece.0);
-        let whole: f64 = texel.iter().map(|piece| piece.1).sum();
-        let mut at = 0;
-        while at < texel.len() {
-            let pixel = texel[at].0;
-            let mut share = 0.0;
-            while at < texel.len() && texel[at].0 == pixel {
-                share += texel[at].1 / whole;
-                at += 1;
+        for (pixel, share) in shares(&mut pieces) {
+            values(pixel % image.width, pixel / image.width, &mut of_pixel);
+            for c in 0..channels {
+                texel[c] += f64::from(share) * f64::from(of_pixel[c]);
             }
-            self.pieces.push((pixel, share as f32));
         }
-        self.ends.push(self.pieces.len());
     }
+    texels
+}
+
+/// Each pixel of a texel's pieces and its share; the shares add up to 1.
+fn shares(pieces: &mut [(u32, f64)]) -> impl Iterator<Item = (u32, f32)> {
+    pieces.sort_unstable_by_key(|piece| piece.0);
+    let whole: f64 = pieces.iter().map(|piece| piece.1).sum();
+    pieces.chunk_by(|a, b| a.0 == b.0).map(move |pieces| {
+        let share = pieces.iter().fold(0.0, |share, piece| share + piece.1 / whole);
+        (pieces[0].0, share as f32)
+    })
 }
 
 type Square = ([f64; 2], [f64; 2]);

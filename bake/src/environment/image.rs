@@ -16,6 +16,7 @@ const ASPECT_SLACK: u32 = 2;
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 /// Luminance of a linear colour.
+#[inline]
 pub fn luminance(rgb: [f64; 3]) -> f64 {
     LUMINANCE[0] * rgb[0] + LUMINANCE[1] * rgb[1] + LUMINANCE[2] * rgb[2]
 }
@@ -78,8 +79,10 @@ impl EnvironmentImage {
     }
 
     /// Luminance of a pixel.
+    #[inline]
     pub fn luminance(&self, pixel: usize) -> f64 {
-        luminance(self.pixels[pixel].map(f64::from))
+        let [r, g, b] = self.pixels[pixel];
+        luminance([f64::from(r), f64::from(g), f64::from(b)])
     }
 
     /// Brightest luminance of a pixel.
@@ -120,6 +123,11 @@ impl EnvironmentImage {
         }
         EnvironmentImage { width, height, pixels, report: self.report }
     }
+}
+
+/// Longitude of a column, which may lie between two.
+pub(super) fn longitude(column: f64, width: u32) -> f64 {
+    2.0 * PI * (column / f64::from(width) - 0.5)
 }
 
 /// Direction at longitude `lambda` and sine of latitude `sine`.

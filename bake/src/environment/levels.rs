@@ -220,7 +220,7 @@ impl Weights {
                     let angle = image.solid_angle_sr(y);
                     for x in i * block..((i + 1) * block).min(image.width) {
                         let l = image.luminance((y * image.width + x) as usize);
-                        let lambda = super::tree::longitude(f64::from(x) + 0.5, image.width);
+                        let lambda = super::image::longitude(f64::from(x) + 0.5, image.width);
                         mean += super::image::direction(lambda, sine) * angle;
                         whole += angle;
                         sum += l * l * angle;

@@ -30,6 +30,7 @@ pub mod query;
 pub mod reference;
 mod rounding;
 pub mod sections;
+mod source;
 mod tree;
 
 crate::shader::shaders!("environment": "eval", "query");

@@ -1,9 +1,12 @@
 //! What an environment is asked to be, and which askings cannot work.
 
 use super::image::EnvironmentImage;
+use super::tree::{BLOCK_BYTES, CELL, REMEMBERED};
 use crate::error::{BakeError, Result};
 use glint_formats::environment::{Kernel, LevelChoice, MAX_FACE_SIZE, MAX_LEVELS};
 
+/// What a program holds before it bakes.
+const PROGRAM_BYTES: u64 = 8 << 20;
 /// Smallest edge of a face.
 pub const MIN_FACE_SIZE: u32 = 4;
 /// Error of radiance that can be asked for; sums in single precision do not carry smaller ones.
@@ -125,18 +128,33 @@ impl EnvironmentOptions {
         texels * (8 * (1 + levels.div_ceil(4)) + colours)
     }
 
-    /// Bytes that the bake holds at a time, roughly.
-    pub fn working_bytes(&self, image: &EnvironmentImage) -> u64 {
+    /// Bytes that a program holds at most while it bakes `image` on so many threads, the image among them; within a fifth.
+    ///
+    /// Most is held while the first filtered mip is, which is the largest: the image, the tree of its cells, radiance of all
+    /// mips in f64 (its factor depends on all of them), rounded indicators and colours, and that mip with all channels, twice.
+    pub fn working_bytes(&self, image: &EnvironmentImage, threads: u64) -> u64 {
         let pixels = image.pixels.len() as u64;
         let levels = self.most_levels() - 1;
         let channels = (4 + levels * if self.coloured { 4 } else { 1 }).next_multiple_of(4);
-        let texels = 8 * u64::from(self.face_size).pow(2);
-        // Pixels with all channels, pieces of the resampling, the tree, and texels in f64.
+        let block = BLOCK_BYTES + 4 * channels;
+        // Blocks are halved until they are no larger than a cell.
         let parts = pixels * u64::from(self.division(image)).pow(2);
-        (pixels + parts) * (12 + 4 * channels + 8)
-            + 24 * texels
-            + 2 * parts * (48 + 4 * channels)
-            + texels * channels * 16
+        let cells = parts.div_ceil(u64::from(CELL)).next_power_of_two();
+        let face = u64::from(self.face_size).pow(2);
+        let light: u64 = (0..self.mips()).map(|mip| 32 * 6 * (face >> (2 * mip))).sum();
+        let radiance = 8 * light / 32;
+        // The first filtered mip has a quarter of the first one's texels.
+        let filtered = if self.mips() > 1 { 2 * 8 * channels * 6 * face / 4 } else { 0 };
+        // Then radiance is rounded; where a sun needs a factor of its own, the brightest texels are sorted.
+        let rounded = radiance + 16 * 6 * face;
+        let walk = 2 * REMEMBERED as u64 * block;
+        PROGRAM_BYTES
+            + 12 * pixels
+            + 2 * cells * block
+            + light
+            + (self.texture_bytes() - radiance)
+            + filtered.max(rounded)
+            + threads * walk
     }
 
     /// In how many parts a side pixels are divided for the filter, so that they are no wider than half a texel of the

@@ -17,9 +17,9 @@
 //! below a share of what the texel will have. Pixels are constant; one that cannot be taken whole is divided evenly.
 
 use super::cube::texel_direction;
-use super::image::luminance;
+use super::image::{longitude, luminance};
 use super::kernel::{Directions, LANES, Lobe, Points, filter_sum};
-use super::tree::{Block, Tree, longitude};
+use super::tree::{Below, Block, Tree, Walk};
 use crate::progress::Progress;
 use glam::Vec3;
 use glint_formats::environment::Kernel;
@@ -59,7 +59,7 @@ const LOOK_RADIUS: f32 = 0.3;
 
 /// What the texels of a mip have in common.
 struct Filter<'a> {
-    tree: &'a Tree,
+    tree: &'a Tree<'a>,
     lobe: &'a Lobe,
     bound: Bound,
     size: u32,
@@ -68,23 +68,21 @@ struct Filter<'a> {
     mean: f64,
 }
 
-/// Texels of one mip, 6 · size² of `tree.channels` numbers each: face by face, row by row. Means under the lobe.
-pub fn filter_mip(tree: &Tree, lobe: &Lobe, size: u32, max_error: f64, progress: &dyn Progress) -> Vec<f64> {
+/// Texels of one mip, 6 · size² of as many numbers each as the source has channels: face by face, row by row. Means under the lobe.
+pub fn filter_mip(tree: &Tree<'_>, lobe: &Lobe, size: u32, max_error: f64, progress: &dyn Progress) -> Vec<f64> {
     // Half of what is allowed, since some texels of a sharp mip look at a sun directly.
     let max_error = if lobe.a < SHARP * SHARP { 0.5 * OF_SHARP * max_error } else { max_error };
     let mean = f64::from(tree.blocks[0].light) / (4.0 * std::f64::consts::PI);
     let filter = Filter { tree, lobe, bound: Bound::new(lobe), size, max_error, mean };
     let edge = size.min(FIELD);
     let squares = squares_of(size, edge);
-    let fields: Vec<Vec<f64>> = squares
-        .par_iter()
-        .map(|square| {
-            let texels = filter.field(*square);
-            progress.advance(u64::from(edge * edge));
-            texels
-        })
-        .collect();
-    let channels = tree.channels;
+    let of = |walk: &mut Walk<'_>, square: &Square| {
+        let texels = filter.field(walk, *square);
+        progress.advance(u64::from(edge * edge));
+        texels
+    };
+    let fields: Vec<Vec<f64>> = squares.par_iter().map_init(|| Walk::new(tree), of).collect();
+    let channels = tree.source.channels;
     let row = edge as usize * channels;
     let mut texels = vec![0.0; 6 * (size * size) as usize * channels];
     for (square, field) in squares.iter().zip(&fields) {
@@ -121,16 +119,17 @@ impl Filter<'_> {
     /// Means of a field's texels, row by row. A texel brighter than the mip's mean has less error as a share, by the root
     /// of their ratio: then bright and dark texels weigh alike in the mip's root mean square. How bright a field gets is
     /// seen once it is done, so fields next to a sun are done twice.
-    fn field(&self, field: Square) -> Vec<f64> {
-        let texels = self.field_within(field, 1.0);
-        let light = texels.chunks_exact(self.tree.channels).map(|t| luminance([t[0], t[1], t[2]]));
+    fn field(&self, walk: &mut Walk<'_>, field: Square) -> Vec<f64> {
+        walk.forget_if_many();
+        let texels = self.field_within(walk, field, 1.0);
+        let light = texels.chunks_exact(self.tree.source.channels).map(|t| luminance([t[0], t[1], t[2]]));
         let share = (self.mean / light.fold(self.mean, f64::max)).sqrt();
-        if share < ALIKE { self.field_within(field, share) } else { texels }
+        if share < ALIKE { self.field_within(walk, field, share) } else { texels }
     }
 
     /// Means of a field's texels to `share` of the error.
-    fn field_within(&self, field: Square, share: f64) -> Vec<f64> {
-        let channels = self.tree.channels;
+    fn field_within(&self, walk: &mut Walk<'_>, field: Square, share: f64) -> Vec<f64> {
+        let channels = self.tree.source.channels;
         let edge = field.edge.min(GROUP);
         let groups: Vec<(Square, Group)> = (0..(field.edge / edge).pow(2))
             .map(|k| {
@@ -142,15 +141,15 @@ impl Filter<'_> {
             .collect();
         let whole = Group::new(&self.directions(field));
         let largest = groups.iter().map(|(_, group)| group.radius).fold(0.0, f32::max);
-        let allowance = self.allowance(&whole, &groups, share);
+        let allowance = self.allowance(walk, &whole, &groups, share);
         let (mut far, mut near) = (Points::default(), Points::default());
         let (mut stack, mut put_off) = (vec![0], Vec::new());
-        self.bound.gather(self.tree, &whole, &allowance, &mut stack, &mut far, Some((largest, &mut put_off)));
+        self.bound.gather(walk, &whole, &allowance, &mut stack, &mut far, Some((largest, &mut put_off)));
         let mut texels = vec![0.0; (field.edge * field.edge) as usize * channels];
         let mut totals = vec![0.0; channels * LANES];
         for (square, group) in &groups {
             stack.extend_from_slice(&put_off);
-            self.bound.gather(self.tree, group, &allowance, &mut stack, &mut near, None);
+            self.bound.gather(walk, group, &allowance, &mut stack, &mut near, None);
             totals.fill(0.0);
             for points in [&far, &near] {
                 filter_sum(points, channels, &group.directions, self.lobe, &mut totals);
@@ -176,14 +175,14 @@ impl Filter<'_> {
     }
 
     /// What the darkest group of a field allows, by a first look in the directions of the groups.
-    fn allowance(&self, whole: &Group, groups: &[(Square, Group)], share: f64) -> Allowance {
+    fn allowance(&self, walk: &mut Walk<'_>, whole: &Group, groups: &[(Square, Group)], share: f64) -> Allowance {
         let centres: Vec<Vec3> = groups.iter().map(|(_, group)| group.centre).collect();
         let look = Group { radius: whole.radius, centre: whole.centre, ..Group::new(&centres) };
         let coarse = Allowance { of_block: FIRST_LOOK, of_texel: [0.0; 2] };
         let (mut points, mut stack) = (Points::default(), vec![0]);
-        let mut totals = vec![0.0; self.tree.channels * LANES];
-        self.bound.gather(self.tree, &look, &coarse, &mut stack, &mut points, None);
-        filter_sum(&points, self.tree.channels, &look.directions, self.lobe, &mut totals);
+        let mut totals = vec![0.0; self.tree.source.channels * LANES];
+        self.bound.gather(walk, &look, &coarse, &mut stack, &mut points, None);
+        filter_sum(&points, self.tree.source.channels, &look.directions, self.lobe, &mut totals);
         let of = |c: usize, lane: usize| totals[c * LANES + lane];
         let least = |value: &dyn Fn(usize) -> f64| (0..LANES).map(value).fold(f64::INFINITY, f64::min);
         let light = least(&|lane| luminance([of(0, lane), of(1, lane), of(2, lane)]));
@@ -253,7 +252,7 @@ impl Bound {
     /// not take, but that are no larger than `leave`, are put off: smaller groups within may take them.
     pub fn gather(
         &self,
-        tree: &Tree,
+        walk: &mut Walk<'_>,
         group: &Group,
         allowance: &Allowance,
         stack: &mut Vec<u32>,
@@ -262,7 +261,7 @@ impl Bound {
     ) {
         points.clear();
         while let Some(index) = stack.pop() {
-            let block = &tree.blocks[index as usize];
+            let block = walk.block(index);
             let distance = Vec3::from(block.mean).distance(group.centre);
             let reach = block.radius + group.radius;
             let near = (distance - reach).max(0.0);
@@ -270,22 +269,20 @@ impl Bound {
             if near * near > 2.0 {
                 continue;
             }
-            let parts = self.parts(block, near, distance + reach, allowance);
+            let parts = self.parts(&block, near, distance + reach, allowance);
             if parts <= 1.0 {
                 points.places.push([block.mean[0], block.mean[1], block.mean[2], block.half_variance]);
-                let first = index as usize * tree.channels;
-                points.sums.extend_from_slice(&tree.sums[first..first + tree.channels]);
+                points.sums.extend_from_slice(walk.sums(index));
                 continue;
             }
             if let Some((leave, list)) = &mut put_off
                 && block.radius <= *leave
             {
                 list.push(index);
-            } else if block.second == 0 {
-                divide(tree, index, parts.min(MAX_PARTS).ceil(), points);
-            } else {
-                stack.push(block.second);
-                stack.push(index + 1);
+            } else if let Below::Pixel(pixel) = block.below {
+                divide(walk.tree, pixel, walk.sums(index), parts.min(MAX_PARTS).ceil(), points);
+            } else if let Some([first, second]) = walk.halves(index, &block) {
+                stack.extend([second, first]);
             }
         }
     }
@@ -352,13 +349,13 @@ impl Bound {
 }
 
 /// Adds a pixel as parts × parts points of equal radiance.
-fn divide(tree: &Tree, index: u32, parts: f32, points: &mut Points) {
-    let block = &tree.blocks[index as usize];
-    let (x, y) = (block.pixel % tree.width, block.pixel / tree.width);
-    let [top, bottom] = [y, y + 1].map(|row| tree.rows[row as usize]);
-    let tall = top[1] - bottom[1];
-    let middle = 0.5 * (top[1] + bottom[1]);
-    let wide = 2.0 * std::f64::consts::PI / f64::from(tree.width) * libm::cos(middle);
+fn divide(tree: &Tree<'_>, pixel: u32, sums: &[f32], parts: f32, points: &mut Points) {
+    let width = tree.source.width;
+    let (x, y) = (pixel % width, pixel / width);
+    let [top, bottom] = [y, y + 1].map(|row| tree.parallels[row as usize]);
+    let tall = top.latitude - bottom.latitude;
+    let middle = 0.5 * (top.latitude + bottom.latitude);
+    let wide = 2.0 * std::f64::consts::PI / f64::from(width) * libm::cos(middle);
     // Parts along the shorter side are fewer, so that they are square.
     let parts = f64::from(parts);
     let longer = tall.max(wide);
@@ -366,16 +363,15 @@ fn divide(tree: &Tree, index: u32, parts: f32, points: &mut Points) {
     let half_variance = |side: f64, count: u32| (side / f64::from(count)).powi(2) / 24.0;
     let half_variance = (half_variance(wide, count_x) + half_variance(tall, count_y)) as f32;
     let share = 1.0 / (count_x * count_y) as f32;
-    let sums = &tree.sums[index as usize * tree.channels..][..tree.channels];
     let meridian = |i: u32| {
-        let lambda = longitude(f64::from(x) + (f64::from(i) + 0.5) / f64::from(count_x), tree.width);
+        let lambda = longitude(f64::from(x) + (f64::from(i) + 0.5) / f64::from(count_x), width);
         [libm::sin(lambda) as f32, -libm::cos(lambda) as f32]
     };
     let meridians: [[f32; 2]; MAX_PARTS as usize] =
         std::array::from_fn(|i| if (i as u32) < count_x { meridian(i as u32) } else { [0.0; 2] });
-    let step = (top[0] - bottom[0]) / f64::from(count_y);
+    let step = (top.sine - bottom.sine) / f64::from(count_y);
     for j in 0..count_y {
-        let sine = top[0] - (f64::from(j) + 0.5) * step;
+        let sine = top.sine - (f64::from(j) + 0.5) * step;
         let (sine, cosine) = (sine as f32, (1.0 - sine * sine).max(0.0).sqrt() as f32);
         for [s, c] in &meridians[..count_x as usize] {
             points.places.push([cosine * s, sine, cosine * c, half_variance]);

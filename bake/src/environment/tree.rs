@@ -4,16 +4,27 @@
 //! A block is split across its longer side as the sphere sees it, so blocks stay compact up to the poles whatever the
 //! image's size. Its point is the luminance-weighted mean direction, left shorter than 1: the mean of t = 1 − n·ω over
 //! the block's light is then exact for every n, and a kernel in t is wrong by its second derivative only.
+//!
+//! Most blocks are those of a few pixels, and few of them are looked at. So the tree ends at cells of up to [`CELL`] pixels, and
+//! what lies below a cell is made when a walk enters it ([`Walk`]). It is the same, bit for bit, as if it had been kept.
 
-use super::image::{EnvironmentImage, direction, luminance};
+use super::image::longitude;
+use super::source::Source;
 use glam::DVec3;
+use std::collections::HashMap;
 use std::f64::consts::PI;
 
-/// Channels that every block sums: red, green, blue and squared luminance.
-pub const BASE_CHANNELS: usize = 4;
+/// Most pixels of a cell. Fewer make more blocks to keep, more make more to be made again by every field of texels.
+pub const CELL: u32 = 16;
+/// Blocks of cells that a walk remembers from one field of texels to the next, which enters many of the same.
+pub const REMEMBERED: usize = 1 << 15;
+/// Bytes of a block without its sums.
+pub const BLOCK_BYTES: u64 = size_of::<Block>() as u64;
+/// Pixels of a part of the tree that is one task.
+const TASK: u32 = 1 << 14;
 
 /// A block of pixels.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Block {
     /// Mean direction of its light, shorter than 1.
     pub mean: [f32; 3],
@@ -31,28 +42,76 @@ pub struct Block {
     pub level_moment: f32,
     /// Squared luminance times solid angle.
     pub square: f32,
-    /// Index of the second child; the first follows the block. 0 in a pixel, whose `pixel` then counts.
-    pub second: u32,
-    /// Index of the pixel, in a pixel.
-    pub pixel: u32,
+    /// What it is made of.
+    pub below: Below,
+}
+
+/// What a block is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Below {
+    /// One pixel, by its index.
+    Pixel(u32),
+    /// A rectangle of pixels from this one on, whose blocks are not kept.
+    Cell {
+        /// Index of the pixel at the top left.
+        first: u32,
+        /// Columns.
+        columns: u8,
+        /// Rows.
+        rows: u8,
+    },
+    /// Two blocks: the one that follows, and the one at this index.
+    Blocks(u32),
+}
+
+/// A block that is yet to be made.
+const EMPTY: Block = Block {
+    mean: [0.0; 3],
+    half_variance: 0.0,
+    radius: 0.0,
+    light: 0.0,
+    colour_moment: 0.0,
+    square_moment: 0.0,
+    level_moment: 0.0,
+    square: 0.0,
+    below: Below::Pixel(0),
+};
+
+/// A circle of latitude at the edge of a row.
+#[derive(Clone, Copy, Debug)]
+pub struct Parallel {
+    /// Sine of its latitude.
+    pub sine: f64,
+    /// Its latitude.
+    pub latitude: f64,
+    /// Its radius, from the sine.
+    radius: f64,
+    /// Cosine of the latitude, from the latitude.
+    cosine: f64,
+}
+
+/// What the pixels of a row have in common.
+#[derive(Clone, Copy)]
+struct Row {
+    solid_angle: f64,
+    /// Mean direction over a pixel: its part in the plane of the equator, and its height.
+    chord: f64,
+    height: f64,
 }
 
 /// The tree. Block 0 is the whole sphere.
-pub struct Tree {
-    /// Columns of the image.
-    pub width: u32,
-    /// Rows of the image.
-    pub height: u32,
-    /// Blocks in order of depth-first search.
+pub struct Tree<'a> {
+    /// The pixels.
+    pub source: Source<'a>,
+    /// Blocks in order of depth-first search, down to cells.
     pub blocks: Vec<Block>,
-    /// Numbers a block, a multiple of 4: [`BASE_CHANNELS`] and then more, zeros at the end.
-    pub channels: usize,
-    /// For each block, each channel's integral over it.
+    /// For each block, each channel's integral over it: as many as the source has.
     pub sums: Vec<f32>,
-    /// Sines and cosines of longitude at column edges.
-    pub columns: Vec<[f64; 2]>,
-    /// Sines and latitudes of row edges.
-    pub rows: Vec<[f64; 2]>,
+    /// Edges of rows.
+    pub parallels: Vec<Parallel>,
+    rows: Vec<Row>,
+    /// Sines and cosines of longitude at edges and middles of columns, in turn.
+    meridians: Vec<[f64; 2]>,
 }
 
 /// What a block hands to the one above.
@@ -97,81 +156,166 @@ struct Rectangle {
     h: u32,
 }
 
-impl Tree {
-    /// The tree of `image`, with `extra` more numbers a pixel, interleaved, besides the base channels. `has_levels`
-    /// says whether indicators are among them, which are worth finer blocks.
-    pub fn new(image: &EnvironmentImage, extra_channels: usize, extra: &[f32], has_levels: bool) -> Tree {
-        let (width, height) = (image.width, image.height);
-        let channels = (BASE_CHANNELS + extra_channels).next_multiple_of(4);
-        let columns = (0..=width).map(|x| longitude(f64::from(x), width)).map(|l| [libm::sin(l), libm::cos(l)]);
-        let rows = (0..=height).map(|y| [image.sine(f64::from(y)), PI * (0.5 - f64::from(y) / f64::from(height))]);
-        let count = 2 * image.pixels.len() - 1;
-        let mut tree = Tree {
-            width,
-            height,
-            blocks: Vec::new(),
-            channels,
-            sums: Vec::new(),
-            columns: columns.collect(),
-            rows: rows.collect(),
-        };
-        let mut blocks = vec![Block::default(); count];
-        let mut sums = vec![0.0; count * channels];
-        let build = Build { image, tree: &tree, extra_channels, extra, has_levels };
-        build.block(Rectangle { x: 0, y: 0, w: width, h: height }, 0, &mut blocks, &mut sums);
-        (tree.blocks, tree.sums) = (blocks, sums);
-        tree
+impl Rectangle {
+    fn pixels(self) -> u32 {
+        self.w * self.h
     }
 }
 
-/// Longitude of a column, which may lie between two.
-pub fn longitude(column: f64, width: u32) -> f64 {
-    2.0 * PI * (column / f64::from(width) - 0.5)
+/// How many blocks a rectangle has, and its halves where they are tasks of their own.
+struct Plan {
+    blocks: usize,
+    halves: Option<Box<[Plan; 2]>>,
 }
 
-struct Build<'a> {
-    image: &'a EnvironmentImage,
-    tree: &'a Tree,
-    extra_channels: usize,
-    extra: &'a [f32],
-    has_levels: bool,
-}
-
-impl Build<'_> {
-    /// Fills the blocks of a rectangle, whose first has index `index` in the tree.
-    fn block(&self, r: Rectangle, index: u32, blocks: &mut [Block], sums: &mut [f32]) -> Moments {
-        let moments = if r.w * r.h == 1 {
-            let pixel = r.y * self.tree.width + r.x;
-            blocks[0].pixel = pixel;
-            self.pixel(r, pixel as usize, sums)
-        } else {
-            let (a, b) = self.split(r);
-            let first = 2 * (a.w * a.h) as usize - 1;
-            let channels = self.tree.channels;
-            let second_index = index + 1 + first as u32;
-            let (own, below) = blocks.split_at_mut(1);
-            let (own_sums, below_sums) = sums.split_at_mut(channels);
-            let (blocks_a, blocks_b) = below.split_at_mut(first);
-            let (sums_a, sums_b) = below_sums.split_at_mut(first * channels);
-            let mut build_a = || self.block(a, index + 1, blocks_a, sums_a);
-            let mut build_b = || self.block(b, second_index, blocks_b, sums_b);
-            // Small blocks are not worth a task.
-            let (a, b) = if first > 1 << 14 { rayon::join(build_a, build_b) } else { (build_a(), build_b()) };
-            own[0].second = second_index;
-            for c in 0..channels {
-                own_sums[c] = below_sums[c] + below_sums[first * channels + c];
-            }
-            a.add(b)
+impl<'a> Tree<'a> {
+    /// The tree of a source.
+    pub fn new(source: Source<'a>) -> Tree<'a> {
+        let (width, height) = (source.width, source.height);
+        let meridian = |k: u32| {
+            let lambda = longitude(0.5 * f64::from(k), width);
+            [libm::sin(lambda), libm::cos(lambda)]
         };
-        self.describe(r, &moments, &mut blocks[0]);
+        let parallels: Vec<Parallel> = (0..=height).map(|y| parallel(y, height)).collect();
+        let half = PI / f64::from(width);
+        let rows = parallels.windows(2).map(|edges| row(edges[0], edges[1], width, half)).collect();
+        let meridians = (0..=2 * width).map(meridian).collect();
+        let mut tree = Tree { source, blocks: Vec::new(), sums: Vec::new(), parallels, rows, meridians };
+        let whole = Rectangle { x: 0, y: 0, w: width, h: height };
+        let plan = tree.plan(whole);
+        let mut blocks = vec![EMPTY; plan.blocks];
+        let mut sums = vec![0.0; plan.blocks * tree.source.channels];
+        tree.planned(whole, &plan, 0, &mut blocks, &mut sums);
+        (tree.blocks, tree.sums) = (blocks, sums);
+        tree
+    }
+
+    fn plan(&self, r: Rectangle) -> Plan {
+        if r.pixels() <= TASK {
+            return Plan { blocks: self.count(r), halves: None };
+        }
+        let (a, b) = self.split(r);
+        let (a, b) = rayon::join(|| self.plan(a), || self.plan(b));
+        Plan { blocks: 1 + a.blocks + b.blocks, halves: Some(Box::new([a, b])) }
+    }
+
+    fn count(&self, r: Rectangle) -> usize {
+        if r.pixels() <= CELL {
+            return 1;
+        }
+        let (a, b) = self.split(r);
+        1 + self.count(a) + self.count(b)
+    }
+
+    /// Fills the blocks of a rectangle, whose first has index `index` in the tree.
+    fn planned(&self, r: Rectangle, plan: &Plan, index: u32, blocks: &mut [Block], sums: &mut [f32]) -> Moments {
+        let Some(halves) = &plan.halves else {
+            return self.down_to_cells(r, index, blocks, sums, &mut Vec::new()).0;
+        };
+        let channels = self.source.channels;
+        let first = halves[0].blocks;
+        let (a, b) = self.split(r);
+        let second = index + 1 + first as u32;
+        let (own, below) = blocks.split_at_mut(1);
+        let (own_sums, below_sums) = sums.split_at_mut(channels);
+        let (blocks_a, blocks_b) = below.split_at_mut(first);
+        let (sums_a, sums_b) = below_sums.split_at_mut(first * channels);
+        let (a, b) = rayon::join(
+            || self.planned(a, &halves[0], index + 1, blocks_a, sums_a),
+            || self.planned(b, &halves[1], second, blocks_b, sums_b),
+        );
+        for c in 0..channels {
+            own_sums[c] = sums_a[c] + sums_b[c];
+        }
+        let moments = a.add(b);
+        own[0] = self.described(r, &moments, Below::Blocks(second));
+        moments
+    }
+
+    /// The same without tasks; also says how many blocks there are. `stack` is room for sums.
+    fn down_to_cells(
+        &self,
+        r: Rectangle,
+        index: u32,
+        blocks: &mut [Block],
+        sums: &mut [f32],
+        stack: &mut Vec<f32>,
+    ) -> (Moments, usize) {
+        let channels = self.source.channels;
+        if r.pixels() <= CELL {
+            stack.clear();
+            let moments = self.sum(r, stack);
+            sums[..channels].copy_from_slice(stack);
+            let first = r.y * self.source.width + r.x;
+            let below = match r.pixels() {
+                1 => Below::Pixel(first),
+                _ => Below::Cell { first, columns: r.w as u8, rows: r.h as u8 },
+            };
+            blocks[0] = self.described(r, &moments, below);
+            return (moments, 1);
+        }
+        let (a, b) = self.split(r);
+        let (a, count) = self.down_to_cells(a, index + 1, &mut blocks[1..], &mut sums[channels..], stack);
+        let first = 1 + count;
+        let second = index + first as u32;
+        let (b, count) = self.down_to_cells(b, second, &mut blocks[first..], &mut sums[first * channels..], stack);
+        for c in 0..channels {
+            sums[c] = sums[channels + c] + sums[first * channels + c];
+        }
+        let moments = a.add(b);
+        blocks[0] = self.described(r, &moments, Below::Blocks(second));
+        (moments, first + count)
+    }
+
+    /// Sums of a rectangle, added at the end of `stack`, in the order in which its blocks would add them.
+    fn sum(&self, r: Rectangle, stack: &mut Vec<f32>) -> Moments {
+        let channels = self.source.channels;
+        if r.pixels() == 1 {
+            let at = stack.len();
+            stack.resize(at + channels, 0.0);
+            return self.pixel(r, &mut stack[at..]);
+        }
+        let (a, b) = self.split(r);
+        let moments = self.sum(a, stack).add(self.sum(b, stack));
+        let second = stack.len() - channels;
+        let (below, second_sums) = stack.split_at_mut(second);
+        for (sum, more) in below[second - channels..].iter_mut().zip(second_sums) {
+            *sum += *more;
+        }
+        stack.truncate(second);
+        moments
+    }
+
+    /// Adds all blocks of a rectangle, down to pixels, to blocks of which the first has index `base`.
+    fn down_to_pixels(&self, r: Rectangle, base: u32, blocks: &mut Vec<Block>, sums: &mut Vec<f32>) -> Moments {
+        let channels = self.source.channels;
+        let own = blocks.len();
+        blocks.push(EMPTY);
+        sums.resize((own + 1) * channels, 0.0);
+        if r.pixels() == 1 {
+            let moments = self.pixel(r, &mut sums[own * channels..]);
+            blocks[own] = self.described(r, &moments, Below::Pixel(r.y * self.source.width + r.x));
+            return moments;
+        }
+        let (a, b) = self.split(r);
+        let a = self.down_to_pixels(a, base, blocks, sums);
+        let second = blocks.len();
+        let b = self.down_to_pixels(b, base, blocks, sums);
+        let (before, after) = sums.split_at_mut((own + 1) * channels);
+        let (first_sums, second_sums) = after.split_at((second - own - 1) * channels);
+        for c in 0..channels {
+            before[own * channels + c] = first_sums[c] + second_sums[c];
+        }
+        let moments = a.add(b);
+        blocks[own] = self.described(r, &moments, Below::Blocks(base + second as u32));
         moments
     }
 
     /// Two halves across the longer side.
     fn split(&self, r: Rectangle) -> (Rectangle, Rectangle) {
-        let tall = PI * f64::from(r.h) / f64::from(self.tree.height);
-        let middle = self.tree.rows[(r.y + r.h / 2) as usize][1];
-        let wide = 2.0 * PI * f64::from(r.w) / f64::from(self.tree.width) * libm::cos(middle).max(1e-9);
+        let tall = PI * f64::from(r.h) / f64::from(self.source.height);
+        let middle = self.parallels[(r.y + r.h / 2) as usize].cosine;
+        let wide = 2.0 * PI * f64::from(r.w) / f64::from(self.source.width) * middle.max(1e-9);
         if r.h > 1 && (tall >= wide || r.w == 1) {
             let h = r.h / 2;
             (Rectangle { h, ..r }, Rectangle { y: r.y + h, h: r.h - h, ..r })
@@ -181,19 +325,12 @@ impl Build<'_> {
         }
     }
 
-    fn pixel(&self, r: Rectangle, pixel: usize, sums: &mut [f32]) -> Moments {
-        let solid_angle = self.image.solid_angle_sr(r.y);
-        let rgb = self.image.pixels[pixel].map(f64::from);
-        let y = luminance(rgb);
-        let mean = self.mean_direction(r);
-        for (sum, value) in sums.iter_mut().zip(rgb.into_iter().chain([y * y])) {
-            *sum = (value * solid_angle) as f32;
-        }
-        let more = &self.extra[pixel * self.extra_channels..][..self.extra_channels];
-        for (sum, value) in sums[BASE_CHANNELS..].iter_mut().zip(more) {
-            *sum = (f64::from(*value) * solid_angle) as f32;
-        }
-        let area = mean * solid_angle;
+    fn pixel(&self, r: Rectangle, sums: &mut [f32]) -> Moments {
+        let row = self.rows[r.y as usize];
+        let solid_angle = row.solid_angle;
+        let (rgb, y) = self.source.sums(r.x, r.y, solid_angle, sums);
+        let [sine, cosine] = self.meridians[(2 * r.x + 1) as usize];
+        let area = DVec3::new(row.chord * sine, row.height, -row.chord * cosine) * solid_angle;
         Moments {
             solid_angle,
             area,
@@ -207,55 +344,132 @@ impl Build<'_> {
         }
     }
 
-    /// Mean direction over a pixel, exact.
-    fn mean_direction(&self, r: Rectangle) -> DVec3 {
-        let [top, bottom] = [r.y, r.y + 1].map(|row| self.tree.rows[row as usize]);
-        // ∫ cos² lat d lat, over the difference of the sines.
-        let part = |[sine, lat]: [f64; 2]| 0.5 * (lat + sine * (1.0 - sine * sine).max(0.0).sqrt());
-        let cosine = (part(top) - part(bottom)) / (top[0] - bottom[0]);
-        let half = PI / f64::from(self.tree.width);
-        let chord = cosine * libm::sin(half) / half;
-        let lambda = longitude(f64::from(r.x) + 0.5, self.tree.width);
-        DVec3::new(chord * libm::sin(lambda), 0.5 * (top[0] + bottom[0]), -chord * libm::cos(lambda))
-    }
-
-    fn describe(&self, r: Rectangle, m: &Moments, block: &mut Block) {
+    fn described(&self, r: Rectangle, m: &Moments, below: Below) -> Block {
         let centroid = m.area / m.solid_angle;
         let mean = if m.light > 0.0 { m.luminance / m.light } else { centroid };
         let shifted = |vector: DVec3, sum: f64| (vector - mean * sum).length();
-        block.mean = mean.as_vec3().to_array();
-        block.half_variance = (0.5 * (1.0 - mean.length_squared())).max(0.0) as f32;
-        block.radius = self.radius(r, mean) as f32;
-        block.light = m.light as f32;
-        block.square = m.square as f32;
-        if r.w * r.h > 1 {
+        let mut block = Block {
+            mean: mean.as_vec3().to_array(),
+            half_variance: (0.5 * (1.0 - mean.length_squared())).max(0.0) as f32,
+            radius: self.radius(r, mean) as f32,
+            light: m.light as f32,
+            square: m.square as f32,
+            below,
+            ..EMPTY
+        };
+        if r.pixels() > 1 {
             let [red, blue] = [0, 1].map(|c| shifted(m.red_blue_vectors[c], m.red_blue[c]));
             block.colour_moment = red.max(blue) as f32;
             block.square_moment = shifted(m.square_vector, m.square) as f32;
-            if self.has_levels {
+            if self.source.has_levels() {
                 block.level_moment = (0.5 * m.brightest * m.solid_angle * (centroid - mean).length()) as f32;
             }
         }
+        block
     }
 
     /// Largest distance of the rectangle from `mean`: of its corners, and of the middles of its edges, since parallels
     /// are no great circles.
     fn radius(&self, r: Rectangle, mean: DVec3) -> f64 {
-        if 2 * r.w >= self.tree.width && r.h > 1 {
+        if 2 * r.w >= self.source.width && r.h > 1 {
             // Corners say nothing of a block that goes around the pole.
             return 1.0 + mean.length();
         }
-        let sines = [r.y, r.y + r.h].map(|y| self.tree.rows[y as usize][0]);
-        let middle = direction(longitude(f64::from(r.x) + 0.5 * f64::from(r.w), self.tree.width), sines[0]);
-        let other = direction(longitude(f64::from(r.x) + 0.5 * f64::from(r.w), self.tree.width), sines[1]);
-        let mut far = (middle - mean).length_squared().max((other - mean).length_squared());
-        for sine in sines {
-            let cosine = (1.0 - sine * sine).max(0.0).sqrt();
-            for x in [r.x, r.x + r.w] {
-                let [s, c] = self.tree.columns[x as usize];
-                far = far.max((DVec3::new(cosine * s, sine, -cosine * c) - mean).length_squared());
+        let mut far = 0.0f64;
+        for parallel in [r.y, r.y + r.h].map(|y| self.parallels[y as usize]) {
+            for k in [2 * r.x, 2 * r.x + r.w, 2 * (r.x + r.w)] {
+                let [s, c] = self.meridians[k as usize];
+                let corner = DVec3::new(parallel.radius * s, parallel.sine, -parallel.radius * c);
+                far = far.max((corner - mean).length_squared());
             }
         }
         far.sqrt()
+    }
+}
+
+/// A way through the tree down to pixels, with the cells that were entered.
+pub struct Walk<'a> {
+    /// The tree.
+    pub tree: &'a Tree<'a>,
+    /// Blocks of the cells that were entered; their indices go on after those of the tree.
+    blocks: Vec<Block>,
+    sums: Vec<f32>,
+    /// Index of a cell in the tree, and of its block here.
+    entered: HashMap<u32, u32>,
+}
+
+impl<'a> Walk<'a> {
+    /// A walk that has entered no cell.
+    pub fn new(tree: &'a Tree<'a>) -> Walk<'a> {
+        Walk { tree, blocks: Vec::new(), sums: Vec::new(), entered: HashMap::new() }
+    }
+
+    /// Forgets all cells where they are many; their indices are then those of others. Keeps the memory.
+    pub fn forget_if_many(&mut self) {
+        if self.blocks.len() > REMEMBERED {
+            self.blocks.clear();
+            self.sums.clear();
+            self.entered.clear();
+        }
+    }
+
+    /// A block by its index.
+    pub fn block(&self, index: u32) -> Block {
+        let index = index as usize;
+        let kept = self.tree.blocks.len();
+        if index < kept { self.tree.blocks[index] } else { self.blocks[index - kept] }
+    }
+
+    /// The sums of a block.
+    pub fn sums(&self, index: u32) -> &[f32] {
+        let index = index as usize;
+        let channels = self.tree.source.channels;
+        let kept = self.tree.blocks.len();
+        let (sums, index) = if index < kept { (&self.tree.sums, index) } else { (&self.sums, index - kept) };
+        &sums[index * channels..][..channels]
+    }
+
+    /// The two blocks that a block is made of; none below a pixel.
+    pub fn halves(&mut self, index: u32, block: &Block) -> Option<[u32; 2]> {
+        match block.below {
+            Below::Pixel(_) => None,
+            Below::Blocks(second) => Some([index + 1, second]),
+            Below::Cell { first, columns, rows } => {
+                let kept = self.tree.blocks.len() as u32;
+                let at = match self.entered.get(&index) {
+                    Some(at) => *at,
+                    None => {
+                        let at = self.blocks.len() as u32;
+                        let (x, y) = (first % self.tree.source.width, first / self.tree.source.width);
+                        let cell = Rectangle { x, y, w: u32::from(columns), h: u32::from(rows) };
+                        self.tree.down_to_pixels(cell, kept, &mut self.blocks, &mut self.sums);
+                        self.entered.insert(index, at);
+                        at
+                    }
+                };
+                match self.blocks[at as usize].below {
+                    Below::Blocks(second) => Some([kept + at + 1, second]),
+                    _ => None,
+                }
+            }
+        }
+    }
+}
+
+fn parallel(y: u32, height: u32) -> Parallel {
+    let latitude = PI * (0.5 - f64::from(y) / f64::from(height));
+    let sine = libm::sin(latitude);
+    Parallel { sine, latitude, radius: (1.0 - sine * sine).max(0.0).sqrt(), cosine: libm::cos(latitude) }
+}
+
+/// The row between two parallels, whose pixels are twice `half` wide.
+fn row(top: Parallel, bottom: Parallel, width: u32, half: f64) -> Row {
+    // ∫ cos² lat d lat, over the difference of the sines.
+    let part = |edge: Parallel| 0.5 * (edge.latitude + edge.sine * edge.radius);
+    let cosine = (part(top) - part(bottom)) / (top.sine - bottom.sine);
+    Row {
+        solid_angle: (top.sine - bottom.sine) * 2.0 * PI / f64::from(width),
+        chord: cosine * libm::sin(half) / half,
+        height: 0.5 * (top.sine + bottom.sine),
     }
 }

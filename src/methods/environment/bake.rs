@@ -32,7 +32,7 @@ pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Fai
     for warning in &loaded.warnings {
         terminal.warn(&format!("{}: {warning}", args.input.display()));
     }
-    let needed = options.working_bytes(&loaded.image);
+    let needed = options.working_bytes(&loaded.image, rayon::current_num_threads() as u64);
     if needed > args.run.max_memory {
         return Err(Failure::bake(
             &args.input,
@@ -44,13 +44,15 @@ pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Fai
     }
     if args.run.dry_run {
         terminal.say(&format!(
-            "would write {}: {} × {} pixels into faces of {} texels, {} mips, at most {}; dry run, nothing was written",
+            "would write {}: {} × {} pixels into faces of {} texels, {} mips, at most {}, with about {} of memory; dry run, \
+             nothing was written",
             args.output.display(),
             loaded.image.width,
             loaded.image.height,
             options.face_size,
             options.mips(),
-            kib(options.texture_bytes())
+            kib(options.texture_bytes()),
+            kib(needed)
         ));
         return Ok(None);
     }
