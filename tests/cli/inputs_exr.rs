@@ -405,7 +405,7 @@ fn other_attributes_are_noted_or_refused() {
 fn whole_numbers_are_refused_where_they_are_read() {
     let files = Files::new();
     let counts = |i: usize, layer: &mut Layer<AnyChannels<FlatSamples>>| {
-        for channel in layer.channel_data.list.iter_mut().filter(|c| i == 0 && c.name != "id.R") {
+        for channel in layer.channel_data.list.iter_mut().filter(|c| i == 0 && c.name != *"id.R") {
             channel.sample_data = FlatSamples::U32(vec![7; 128]);
         }
     };
