@@ -256,13 +256,11 @@ enum Value {
     Text(OsString),
 }
 
-/// A flag with its value as it is typed; without one when that is empty.
+/// A flag with its value as it is typed; an empty text is a value too.
 fn flag(key: &str, value: &OsStr) -> OsString {
     let mut text = OsString::from(typed(key, ""));
-    if !value.is_empty() {
-        text.push("=");
-        text.push(value);
-    }
+    text.push("=");
+    text.push(value);
     text
 }
 
