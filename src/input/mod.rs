@@ -2,6 +2,8 @@
 
 mod chunks;
 mod colour_tag;
+#[cfg(test)]
+mod corpus;
 pub mod environment;
 mod error;
 mod exr;
@@ -16,6 +18,7 @@ mod options;
 mod orientation;
 mod pixels;
 mod primaries;
+mod radiance;
 mod raster;
 pub mod synthetic;
 mod tiff_file;

@@ -12,6 +12,9 @@ use super::limits::check_size;
 use super::options::InputOptions;
 use super::orientation::Orientation;
 use super::pixels::{Pixels, Stored, Values};
+use zune_core::bytestream::ZCursor;
+use zune_core::options::DecoderOptions;
+use zune_jpeg::JpegDecoder;
 
 /// Bytes of decoded pixels that one byte of file can stand for: deflate reaches 1032, LZW 2730, TGA runs 128. A file
 /// that promises more is cut off, and need not be allocated for.
@@ -36,6 +39,9 @@ pub(super) fn decode(
     let colour = decoder.color_type();
     check_size(path, (width as u64, height as u64), colour.bytes_per_pixel() as u64, options.max_memory)?;
     check_not_cut_off(path, bytes, format, decoder.total_bytes())?;
+    if format == ImageFormat::Jpeg {
+        check_jpeg_data(path, bytes)?;
+    }
     notes.extend(what_else(bytes, format).map(str::to_owned));
     let stored = Stored {
         bits: bits(bytes, format, decoder.original_color_type()),
@@ -94,6 +100,20 @@ fn check_jpeg(path: &Path, bytes: &[u8]) -> Result<(), InputError> {
         ));
     }
     if jpeg.has_end { Ok(()) } else { Err(cut_off(path)) }
+}
+
+/// The decoder fills what it cannot read with grey or black, and says nothing; in its strict mode it names the first such place.
+fn check_jpeg_data(path: &Path, bytes: &[u8]) -> Result<(), InputError> {
+    let strict = DecoderOptions::default().set_strict_mode(true);
+    match JpegDecoder::new_with_options(ZCursor::new(bytes), strict).decode() {
+        // So begins what strict mode alone minds, such as bytes between headers, which belong to no pixel.
+        Err(error) if !error.to_string().contains("[strict-mode]") => {
+            let error = format!("{error:?}");
+            let what = error.trim_matches('"').split_whitespace().collect::<Vec<_>>().join(" ");
+            Err(InputError::bad(path, format!("the image is damaged: {what}; copy or export it again")))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn check_not_cut_off(path: &Path, bytes: &[u8], format: ImageFormat, decoded: u64) -> Result<(), InputError> {

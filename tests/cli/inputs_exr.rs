@@ -284,6 +284,17 @@ fn two_channels_are_of_one_layer() {
 }
 
 #[test]
+fn x_may_be_in_alpha_of_the_same_layer() {
+    let files = Files::new();
+    let options = InputOptions { channels: Some(Channels::Ag), ..InputOptions::default() };
+    let swizzled: Flat<'_> = &[("R", 1.0), ("G", 0.74), ("B", 1.0), ("A", 0.32)];
+    let path = files.write("ag.exr", &[("", &[swizzled, &prefixed("specular", RGB)].concat())]);
+    is_n(&load_normal_map(&path, &options).unwrap());
+    let path = files.write("no_alpha.exr", &[("", &[RGB, &prefixed("mask", &[("A", 1.0)])].concat())]);
+    refused(load_normal_map(&path, &options), 4, &["R, G, B, A", "mask (A)"]);
+}
+
+#[test]
 fn heights_are_one_channel_of_one_layer() {
     let files = Files::new();
     let options = InputOptions { height: Some(1.0), ..InputOptions::default() };

@@ -594,6 +594,35 @@ fn files_that_are_not_read_are_named_as_what_they_are() {
 }
 
 #[test]
+fn a_jpeg_with_damaged_data_is_refused_and_one_with_odd_headers_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let sound = encoded(&picture(SIZE, &normals(SIZE, |i, j| (i, j))), ImageFormat::Jpeg);
+    let scan = sound.windows(2).position(|w| w == [0xff, 0xda]).unwrap();
+    let middle = (scan + sound.len()) / 2;
+    let with = |at: usize, bytes: &[u8]| {
+        let mut file = sound.clone();
+        file.splice(at..at, bytes.iter().copied());
+        file
+    };
+    let mut cut = sound[..middle].to_vec();
+    cut.extend([0xff, 0xd9]);
+    let damaged =
+        [("marker.jpg", with(middle, &[0xff, 0xc0])), ("restart.jpg", with(middle, &[0xff, 0xd8])), ("ends.jpg", cut)];
+    for (name, bytes) in damaged {
+        let error = load(folder.path(), name, &bytes, &InputOptions::default()).unwrap_err();
+        assert_eq!(error.exit_code(), 4, "{error}");
+        assert!(error.to_string().contains("damaged"), "{error}");
+    }
+    // Bytes between headers, and after the end, belong to no pixel.
+    let plain = load(folder.path(), "plain.jpg", &sound, &InputOptions::default()).unwrap();
+    let end = sound.len();
+    for (name, bytes) in [("between.jpg", with(scan, &[0; 7])), ("after.jpg", with(end, b"trailer"))] {
+        let loaded = load(folder.path(), name, &bytes, &InputOptions::default()).unwrap();
+        assert!(loaded.map == plain.map, "{name}");
+    }
+}
+
+#[test]
 fn environments_are_named_as_what_they_are() {
     let folder = tempfile::tempdir().unwrap();
     let png = encoded(&picture(SIZE, &normals(SIZE, |i, j| (i, j))), ImageFormat::Png);

@@ -15,6 +15,8 @@ pub(super) enum Need {
     Normals,
     /// x and y of normals.
     TwoChannels,
+    /// x and y of normals, one of them in alpha.
+    WithAlpha,
     /// One channel of heights, or three that should be the same.
     Height,
     /// Three channels of radiance, or one.
@@ -34,6 +36,7 @@ pub(super) enum Set {
     One([usize; 1]),
     Two([usize; 2]),
     Three([usize; 3]),
+    Four([usize; 4]),
 }
 
 impl Set {
@@ -42,6 +45,7 @@ impl Set {
             Set::One(one) => one,
             Set::Two(two) => two,
             Set::Three(three) => three,
+            Set::Four(four) => four,
         }
     }
 }
@@ -83,7 +87,9 @@ pub(super) fn choose(
         check_rivals(best, &rivals, &layers, need)?;
         notes.extend(taken(best, &layers));
     }
-    if matches!(need, Need::Normals | Need::TwoChannels) && Kind::of(&best.layer.meaning) == Kind::OtherNormals {
+    if matches!(need, Need::Normals | Need::TwoChannels | Need::WithAlpha)
+        && Kind::of(&best.layer.meaning) == Kind::OtherNormals
+    {
         notes.push(format!(
             "{} may hold normals of the world's or the camera's space by its name; a map needs those of the tangent space",
             best.layer.title()
@@ -163,7 +169,7 @@ fn list<'a>(layers: impl IntoIterator<Item = &'a Layer>) -> String {
 impl Need {
     fn what(self) -> &'static str {
         match self {
-            Need::Normals | Need::TwoChannels => "the normals",
+            Need::Normals | Need::TwoChannels | Need::WithAlpha => "the normals",
             Need::Height => "the heights",
             Need::Radiance => "the radiance",
         }
@@ -176,6 +182,7 @@ impl Need {
                  height map give --height SCALE)"
             }
             Need::TwoChannels => "expected a layer of normals with channels R, G or X, Y",
+            Need::WithAlpha => "expected a layer of normals with channels R, G, B, A for these --channels",
             Need::Height => "--height expects one channel, or one called Y, Z or height, or grey in R, G, B",
             Need::Radiance => "expected a layer of colours with channels R, G, B, or a single one",
         }
@@ -187,6 +194,9 @@ impl Need {
         let found = match self {
             Need::Normals => normals(layer, kind, |layer, roles| layer.all(roles).map(Set::Three)),
             Need::TwoChannels => normals(layer, kind, |layer, [x, y, _]| layer.all([x, y]).map(Set::Two)),
+            Need::WithAlpha => {
+                normals(layer, kind, |layer, [x, y, z]| layer.all([x, y, z, Role::Alpha]).map(Set::Four))
+            }
             Need::Height => heights(layer, kind, is_only),
             Need::Radiance => radiance(layer, kind, is_only),
         };

@@ -16,12 +16,15 @@ mod tests;
 
 use super::error::InputError;
 use super::limits::check_size;
-use super::options::{Channels, InputOptions};
+use super::options::InputOptions;
 use super::pixels::{Pixels, Stored, Values};
 use attributes::Subject;
 use choice::{Choice, Need, Set, choose};
 use header::File;
 use std::path::Path;
+
+/// The column of a texel that alpha is in.
+const ALPHA: usize = 3;
 
 /// Decodes the normals or, with `options.height`, the heights of an EXR file.
 pub(super) fn decode(
@@ -30,10 +33,11 @@ pub(super) fn decode(
     options: &InputOptions,
     notes: &mut Vec<String>,
 ) -> Result<Pixels, InputError> {
-    let need = match (options.height, options.channels.unwrap_or_default()) {
+    let need = match (options.height, options.channels.unwrap_or_default().two()) {
         (Some(_), _) => Need::Height,
-        (None, Channels::Xy | Channels::Yx) => Need::TwoChannels,
-        (None, _) => Need::Normals,
+        (None, None) => Need::Normals,
+        (None, Some([x, y])) if x.max(y) < ALPHA => Need::TwoChannels,
+        (None, Some(_)) => Need::WithAlpha,
     };
     let chosen = chosen(path, bytes, need, options, notes)?;
     attributes::check(path, &chosen.file, chosen.choice.part, Subject::Map(options.wrap), notes)?;
@@ -43,6 +47,7 @@ pub(super) fn decode(
         }
         Set::Two(xy) => Values::Rgb(chosen.read(path, xy, options)?.into_iter().map(|[x, y]| [x, y, 0.0]).collect()),
         Set::Three(xyz) => Values::Rgb(chosen.read(path, xyz, options)?),
+        Set::Four(rgba) => Values::Rgba(chosen.read(path, rgba, options)?),
     };
     let stored = Stored { lossy: chosen.file.lossy(chosen.choice.part), ..Stored::default() };
     Ok(Pixels { width: chosen.size.0, height: chosen.size.1, values, stored })
@@ -59,7 +64,7 @@ pub(super) fn decode_radiance(
     let to_rec_709 = attributes::check(path, &chosen.file, chosen.choice.part, Subject::Environment, notes)?;
     let mut pixels = match chosen.choice.channels {
         Set::One([grey]) | Set::Two([grey, _]) => chosen.read(path, [grey; 3], options)?,
-        Set::Three(rgb) => chosen.read(path, rgb, options)?,
+        Set::Three(rgb) | Set::Four([rgb @ .., _]) => chosen.read(path, rgb, options)?,
     };
     if let Some(matrix) = to_rec_709 {
         for pixel in pixels.iter_mut().filter(|pixel| pixel.iter().all(|value| value.is_finite())) {
