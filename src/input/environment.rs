@@ -2,7 +2,7 @@
 
 use super::error::InputError;
 use super::exr;
-use super::format::no_environment;
+use super::format::{EXR_MAGIC, no_environment};
 use super::guard::guarded;
 use super::limits::{digest, from_bake, read};
 use super::options::InputOptions;
@@ -50,7 +50,7 @@ pub(super) fn decode(
     options: &InputOptions,
     warnings: &mut Vec<String>,
 ) -> Result<(u32, u32, Vec<[f32; 3]>), InputError> {
-    if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
+    if bytes.starts_with(EXR_MAGIC) {
         exr::decode_radiance(path, bytes, options, warnings)
     } else if bytes.starts_with(radiance::MAGIC) {
         options.check_has_layers(path, "Radiance HDR")?;

@@ -7,6 +7,9 @@ use image::ImageFormat;
 use super::error::InputError;
 use super::foreign;
 
+/// How OpenEXR files begin.
+pub(super) const EXR_MAGIC: &[u8] = &[0x76, 0x2f, 0x31, 0x01];
+
 /// A format that is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
@@ -78,7 +81,7 @@ pub(super) fn extension_note(path: &Path, format: Format) -> Option<String> {
 
 /// The format, when it is one that is read.
 fn recognise(path: &Path, bytes: &[u8]) -> Option<Format> {
-    if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
+    if bytes.starts_with(EXR_MAGIC) {
         return Some(Format::Exr);
     }
     // The extension comes first for TGA: its first bytes are free and may look like anything short, such as "BM".

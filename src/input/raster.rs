@@ -3,7 +3,10 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
+use image::{
+    ColorType, DynamicImage, ExtendedColorType, GrayImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits,
+    RgbImage,
+};
 
 use super::chunks::{self, Jpeg};
 use super::colour_tag::ColourTag;
@@ -13,6 +16,7 @@ use super::options::InputOptions;
 use super::orientation::Orientation;
 use super::pixels::{Pixels, Stored, Values};
 use zune_core::bytestream::ZCursor;
+use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;
 use zune_jpeg::JpegDecoder;
 
@@ -39,9 +43,6 @@ pub(super) fn decode(
     let colour = decoder.color_type();
     check_size(path, (width as u64, height as u64), colour.bytes_per_pixel() as u64, options.max_memory)?;
     check_not_cut_off(path, bytes, format, decoder.total_bytes())?;
-    if format == ImageFormat::Jpeg {
-        check_jpeg_data(path, bytes)?;
-    }
     notes.extend(what_else(bytes, format).map(str::to_owned));
     let stored = Stored {
         bits: bits(bytes, format, decoder.original_color_type()),
@@ -50,7 +51,14 @@ pub(super) fn decode(
         orientation: orientation(bytes, format, &mut decoder),
     };
 
-    let image = DynamicImage::from_decoder(decoder).map_err(|e| from_image(path, e))?;
+    let strict = match format {
+        ImageFormat::Jpeg => strict_jpeg(path, bytes, colour, (width, height))?,
+        _ => None,
+    };
+    let image = match strict {
+        Some(image) => image,
+        None => DynamicImage::from_decoder(decoder).map_err(|e| from_image(path, e))?,
+    };
     let values = match values(path, image)? {
         // The fourth byte of such a texel is padding.
         Values::Rgba(v) if format == ImageFormat::Tga && !tga_has_alpha(bytes) => {
@@ -102,17 +110,27 @@ fn check_jpeg(path: &Path, bytes: &[u8]) -> Result<(), InputError> {
     if jpeg.has_end { Ok(()) } else { Err(cut_off(path)) }
 }
 
-/// The decoder fills what it cannot read with grey or black, and says nothing; in its strict mode it names the first such place.
-fn check_jpeg_data(path: &Path, bytes: &[u8]) -> Result<(), InputError> {
-    let strict = DecoderOptions::default().set_strict_mode(true);
+/// The pixels of a JPEG; None where strict mode minds what belongs to no pixel, such as bytes between headers. By itself the decoder
+/// fills what it cannot read with grey or black, and says nothing; in its strict mode it names the first such place.
+fn strict_jpeg(
+    path: &Path,
+    bytes: &[u8],
+    colour: ColorType,
+    (width, height): (u32, u32),
+) -> Result<Option<DynamicImage>, InputError> {
+    let space = if colour == ColorType::L8 { ColorSpace::Luma } else { ColorSpace::RGB };
+    let strict = DecoderOptions::default().set_strict_mode(true).jpeg_set_out_colorspace(space);
     match JpegDecoder::new_with_options(ZCursor::new(bytes), strict).decode() {
-        // So begins what strict mode alone minds, such as bytes between headers, which belong to no pixel.
-        Err(error) if !error.to_string().contains("[strict-mode]") => {
+        Ok(pixels) if colour == ColorType::L8 => {
+            Ok(GrayImage::from_raw(width, height, pixels).map(DynamicImage::ImageLuma8))
+        }
+        Ok(pixels) => Ok(RgbImage::from_raw(width, height, pixels).map(DynamicImage::ImageRgb8)),
+        Err(error) if error.to_string().contains("[strict-mode]") => Ok(None),
+        Err(error) => {
             let error = format!("{error:?}");
             let what = error.trim_matches('"').split_whitespace().collect::<Vec<_>>().join(" ");
             Err(InputError::bad(path, format!("the image is damaged: {what}; copy or export it again")))
         }
-        _ => Ok(()),
     }
 }
 

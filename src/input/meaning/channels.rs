@@ -52,57 +52,59 @@ pub(super) fn check_there(path: &Path, values: &Values, channels: Option<Channel
     Ok(())
 }
 
-/// What is asked of all painted texels.
-struct Survey {
+/// What the channels of all painted texels span.
+struct Ranges {
     least: [f32; 4],
     most: [f32; 4],
     /// Largest difference between two of the three colours.
     colourful: f32,
     texels: u64,
+}
+
+impl Ranges {
+    fn of(values: &Values, coverage: &Coverage) -> Ranges {
+        let mut ranges = Ranges { least: [f32::INFINITY; 4], most: [f32::NEG_INFINITY; 4], colourful: 0.0, texels: 0 };
+        for texel in values.texels().filter(|texel| !coverage.is_unpainted(texel)) {
+            for (channel, &v) in texel.iter().enumerate() {
+                ranges.least[channel] = ranges.least[channel].min(v);
+                ranges.most[channel] = ranges.most[channel].max(v);
+            }
+            let [r, g, b, _] = texel;
+            ranges.colourful = ranges.colourful.max((r - g).abs()).max((g - b).abs());
+            ranges.texels += 1;
+        }
+        ranges
+    }
+
+    fn of_channel(&self, channel: usize) -> f32 {
+        self.most[channel] - self.least[channel]
+    }
+
+    fn share(&self, count: u64) -> f64 {
+        count as f64 / self.texels as f64
+    }
+}
+
+/// Painted texels that cannot be what some channels would make them.
+#[derive(Default)]
+struct Misfits {
     /// Texels that are no unit vectors.
     wrong_length: u64,
     /// Texels whose red and green, alpha and red, alpha and green are too long for two components.
     too_long: [u64; 3],
 }
 
-impl Survey {
-    fn of(values: &Values, scale: Scale, coverage: &Coverage) -> Survey {
-        let mut survey = Survey {
-            least: [f32::INFINITY; 4],
-            most: [f32::NEG_INFINITY; 4],
-            colourful: 0.0,
-            texels: 0,
-            wrong_length: 0,
-            too_long: [0; 3],
-        };
+impl Misfits {
+    fn of(values: &Values, scale: Scale, coverage: &Coverage) -> Misfits {
+        let mut misfits = Misfits::default();
         for texel in values.texels().filter(|texel| !coverage.is_unpainted(texel)) {
-            survey.add(texel, scale);
+            let [x, y, z, w] = texel.map(|v| scale.signed(v));
+            misfits.wrong_length += u64::from(((x * x + y * y + z * z).sqrt() - 1.0).abs() > MAX_LENGTH_ERROR);
+            for (count, (x, y)) in misfits.too_long.iter_mut().zip([(x, y), (w, x), (w, y)]) {
+                *count += u64::from(x.hypot(y) > 1.0 + MAX_Z_ERROR);
+            }
         }
-        survey
-    }
-
-    fn add(&mut self, texel: [f32; 4], scale: Scale) {
-        for (channel, &v) in texel.iter().enumerate() {
-            self.least[channel] = self.least[channel].min(v);
-            self.most[channel] = self.most[channel].max(v);
-        }
-        let [r, g, b, a] = texel;
-        self.colourful = self.colourful.max((r - g).abs()).max((g - b).abs());
-        let [x, y, z, w] = [r, g, b, a].map(|v| scale.signed(v));
-        self.texels += 1;
-        self.wrong_length += u64::from(((x * x + y * y + z * z).sqrt() - 1.0).abs() > MAX_LENGTH_ERROR);
-        let too_long = |x: f32, y: f32| u64::from(x.hypot(y) > 1.0 + MAX_Z_ERROR);
-        self.too_long[0] += too_long(x, y);
-        self.too_long[1] += too_long(w, x);
-        self.too_long[2] += too_long(w, y);
-    }
-
-    fn range(&self, channel: usize) -> f32 {
-        self.most[channel] - self.least[channel]
-    }
-
-    fn share(&self, count: u64) -> f64 {
-        count as f64 / self.texels as f64
+        misfits
     }
 }
 
@@ -124,18 +126,21 @@ pub(super) fn refuse_two(
     scale: Scale,
     coverage: &Coverage,
 ) -> Result<(), InputError> {
-    let survey = Survey::of(values, scale, coverage);
+    let ranges = Ranges::of(values, coverage);
     let tolerance = if stored.lossy.is_some() { CONSTANT_LOSSY } else { CONSTANT };
-    let constant = |channel: usize| survey.range(channel) <= tolerance;
-    if survey.texels == 0 {
+    let constant = |channel: usize| ranges.of_channel(channel) <= tolerance;
+    let one_colour = ranges.colourful <= tolerance;
+    let rest_is_constant = constant(2) && (constant(0) || constant(1));
+    let in_alpha = values.has_alpha() && !constant(3) && (one_colour || rest_is_constant);
+    let pair = constant(2) && (!constant(0) || !constant(1));
+    // Nearly all maps end here, so that no more is asked of their texels.
+    if ranges.texels == 0 || !(in_alpha || pair) {
         return Ok(());
     }
-    let one_colour = survey.colourful <= tolerance;
-    let rest_is_constant = constant(2) && (constant(0) || constant(1));
-    let in_alpha = values.has_alpha() && !constant(3);
-    let no_vectors = survey.share(survey.wrong_length) > 0.5;
-    let fits = survey.share(survey.too_long[1].min(survey.too_long[2])) <= STRAY;
-    if in_alpha && no_vectors && (one_colour || rest_is_constant) && fits {
+    let misfits = Misfits::of(values, scale, coverage);
+    let no_vectors = ranges.share(misfits.wrong_length) > 0.5;
+    let fits = ranges.share(misfits.too_long[1].min(misfits.too_long[2])) <= STRAY;
+    if in_alpha && no_vectors && fits {
         let found = if one_colour { "red, green and blue are the same" } else { "all colours but one are constant" };
         return Err(InputError::bad(
             path,
@@ -146,16 +151,16 @@ pub(super) fn refuse_two(
             ),
         ));
     }
-    let pair = constant(2) && (!constant(0) || !constant(1)) && survey.share(survey.too_long[0]) <= STRAY;
+    let pair = pair && ranges.share(misfits.too_long[0]) <= STRAY;
     // A shallow map that was encoded by the sRGB curve has the right z once it is decoded.
-    let wrong = |transfer: Transfer| survey.share(wrong_z(values, scale, coverage, &transfer)) > STRAY;
+    let wrong = |transfer: Transfer| ranges.share(wrong_z(values, scale, coverage, &transfer)) > STRAY;
     if pair && wrong(Transfer::Linear) && (scale == Scale::Signed || wrong(Transfer::Srgb)) {
         return Err(InputError::bad(
             path,
             format!(
                 "this looks like a map of two channels: blue is {:.2} everywhere, which is not the z of red and green. Give \
                  --channels xy (BC5; z is computed), or yx; if blue is z after all, --channels xyz",
-                (survey.least[2] + survey.most[2]) / 2.0
+                (ranges.least[2] + ranges.most[2]) / 2.0
             ),
         ));
     }

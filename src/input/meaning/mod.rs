@@ -73,12 +73,16 @@ fn vectors(
             }
         }
     };
-    let measured = || painted().map(vector);
+    let vectors: Vec<[f32; 3]> = values.texels().map(vector).collect();
+    let measured = || {
+        let painted = |(texel, vector): ([f32; 4], &[f32; 3])| (!coverage.is_unpainted(&texel)).then_some(*vector);
+        values.texels().zip(&vectors).filter_map(painted)
+    };
     if options.channels.is_none() {
         space::refuse_other_spaces(path, measured())?;
     }
     if let Some(codec) = stored.lossy {
         notes.push(noise::note(codec, two.is_some(), measured()));
     }
-    Ok(values.texels().map(vector).collect())
+    Ok(vectors)
 }
