@@ -1,5 +1,5 @@
-//! The pixels of an image with all the channels that are filtered, worked out where they are asked for: a pixel's channels take
-//! less time than to fetch them from memory, and an image with all of them takes several times the memory of its radiance.
+//! The pixels of an image with all the channels that are filtered, worked out where they are asked for: an image with all of them
+//! takes several times the memory of its radiance: 32 bytes a pixel at four levels, 256 at sixteen with colours, for 12.
 
 use super::image::{EnvironmentImage, luminance};
 use super::levels::shares;
