@@ -75,6 +75,8 @@ mod shipped_maps;
 mod support;
 #[path = "cli/surface.rs"]
 mod surface;
+#[path = "cli/textures.rs"]
+mod textures;
 #[cfg(feature = "view")]
 #[path = "cli/view.rs"]
 mod view;

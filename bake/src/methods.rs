@@ -18,6 +18,8 @@ pub mod ndf_maps;
 pub mod surface;
 #[path = "synthesis/mod.rs"]
 pub mod synthesis;
+#[path = "textures/mod.rs"]
+pub mod textures;
 
 /// The WGSL files of every method.
 pub(crate) const SHADERS: &[&[Shader]] = &[

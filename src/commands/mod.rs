@@ -12,6 +12,7 @@ mod plan;
 mod preview;
 mod report;
 mod shaders;
+mod textures;
 mod view;
 
 use crate::cli::{Common, LONG_VERSION, Terminal};
@@ -55,6 +56,7 @@ enum Command {
     Plan(plan::Args),
     Preview(preview::Args),
     Export(export::Args),
+    Textures(Box<textures::Args>),
     Generate(generate::Args),
     Shaders(shaders::Args),
     Report(report::Args),
@@ -71,6 +73,7 @@ pub fn bake(cli: Bake) -> Result<(), Failure> {
         Command::Plan(args) => plan::run(&args, terminal),
         Command::Preview(args) => preview::run(&args, terminal),
         Command::Export(args) => export::run(&args, terminal),
+        Command::Textures(args) => textures::run(&args, terminal),
         Command::Generate(args) => generate::run(&args, programs(), terminal),
         Command::Shaders(args) => shaders::run(&args, terminal),
         Command::Report(args) => report::run(&args, terminal),

@@ -16,6 +16,7 @@ mod ndf_maps;
 mod settings;
 mod surface;
 mod table;
+mod textures;
 
 pub use dictionary::HEADLINE;
 pub use document::Document;
@@ -36,7 +37,7 @@ pub struct Report {
 }
 
 /// All reports, in the order in which they are made.
-pub const REPORTS: [Report; 9] = [
+pub const REPORTS: [Report; 10] = [
     Report {
         name: "ndf-maps",
         about: "NDF maps of small examples: bytes, time and error of tiles, footprints and run-time settings",
@@ -84,6 +85,12 @@ pub const REPORTS: [Report; 9] = [
         about: "surfaces of patches: error across seams and inside patches",
         check: surface::check,
         measure: surface::measure,
+    },
+    Report {
+        name: "textures",
+        about: "textures with filtered mips: error of highlights and flicker by mip, against closed forms",
+        check: textures::check,
+        measure: textures::measure,
     },
     Report {
         name: "frames",

@@ -48,7 +48,9 @@ fn assert_svg(path: &Path) {
 fn all_reports_are_listed_and_what_is_missing_is_said() {
     let folder = tempfile::tempdir().unwrap();
     let list = bake(folder.path(), &["report", "--list", "--data", "nowhere"]).ok().stdout;
-    for name in ["ndf-maps", "dictionary", "counting", "environment", "area-light", "lobes", "surface", "frames"] {
+    for name in
+        ["ndf-maps", "dictionary", "counting", "environment", "area-light", "lobes", "surface", "textures", "frames"]
+    {
         assert!(list.lines().any(|line| line.starts_with(&format!("{name} "))), "{name} is missing from:\n{list}");
     }
     assert!(list.contains("cannot be made here: nowhere/tiny/brushed_16x16.png"), "{list}");

@@ -1,4 +1,5 @@
-//! A texture as a KTX2 file (Khronos Texture 2.0, sections 3 to 5). Without supercompression, so any loader reads it.
+//! A texture as a KTX2 file (Khronos Texture 2.0, sections 3 to 5). Without supercompression any loader reads it; with
+//! Zstandard each level is a frame of its own.
 //!
 //! A pack and a KTX2 file order the images of a mip alike; the file has the smallest mip first and aligns each.
 
@@ -9,9 +10,28 @@ const IDENTIFIER: [u8; 12] = *b"\xABKTX 20\xBB\r\n\x1A\n";
 const HEADER_BYTES: usize = 80;
 const LEVEL_ENTRY_BYTES: usize = 24;
 
-/// Bytes of a KTX2 file with this texture. `metadata` are keys with text values; those that begin with `KTX` are
+/// How hard levels are compressed; more gains little on normals.
+const ZSTD_LEVEL: i32 = 9;
+/// Number of Zstandard among the schemes of supercompression.
+const SCHEME_ZSTD: usize = 2;
+
+/// Bytes of a KTX2 file with this texture, not supercompressed. `metadata` are keys with text values; those that begin with `KTX` are
 /// Khronos's. A texture of one layer is no array, one of six faces is a cube. `None` for a format packs do not use.
 pub fn write(texture: &Texture, payload: &[u8], metadata: &[(&str, &str)]) -> Option<Vec<u8>> {
+    let levels: Vec<&[u8]> = (0..texture.mips).map(|mip| &payload[texture.mip_range(mip)]).collect();
+    file(texture, &levels, 0, metadata)
+}
+
+/// The same with levels compressed by Zstandard.
+pub fn write_zstd(texture: &Texture, payload: &[u8], metadata: &[(&str, &str)]) -> Option<Vec<u8>> {
+    let compress = |mip| zstd::bulk::compress(&payload[texture.mip_range(mip)], ZSTD_LEVEL).ok();
+    let levels: Vec<Vec<u8>> = (0..texture.mips).map(compress).collect::<Option<_>>()?;
+    let levels: Vec<&[u8]> = levels.iter().map(Vec::as_slice).collect();
+    file(texture, &levels, SCHEME_ZSTD, metadata)
+}
+
+/// A file of these levels, the largest first.
+fn file(texture: &Texture, levels: &[&[u8]], scheme: usize, metadata: &[(&str, &str)]) -> Option<Vec<u8>> {
     let layout = texel::layout(texture.vk_format)?;
     let dfd = dfd::descriptor(&layout, texture.texel_bytes() as u8);
     let kvd = key_values(metadata);
@@ -20,13 +40,13 @@ pub fn write(texture: &Texture, payload: &[u8], metadata: &[(&str, &str)]) -> Op
     let dfd_at = HEADER_BYTES + LEVEL_ENTRY_BYTES * texture.mips as usize;
     let kvd_at = dfd_at + dfd.len();
 
-    // Where each mip lies: the last first, each at a multiple of its texel and of 4.
-    let alignment = texture.texel_bytes().max(4);
+    // Where each mip lies: the last first, each at a multiple of its texel and of 4; compressed ones at any byte.
+    let alignment = if scheme == 0 { texture.texel_bytes().max(4) } else { 1 };
     let mut end = kvd_at + kvd.len();
     let mut places = vec![0; texture.mips as usize];
     for mip in (0..texture.mips).rev() {
         places[mip as usize] = end.next_multiple_of(alignment);
-        end = places[mip as usize] + texture.mip_bytes(mip);
+        end = places[mip as usize] + levels[mip as usize].len();
     }
 
     let mut out = Vec::with_capacity(end);
@@ -42,7 +62,7 @@ pub fn write(texture: &Texture, payload: &[u8], metadata: &[(&str, &str)]) -> Op
         layers,
         texture.faces,
         texture.mips,
-        0, // no supercompression
+        word(scheme),
         word(dfd_at),
         word(dfd.len()),
         if kvd.is_empty() { 0 } else { word(kvd_at) },
@@ -52,8 +72,7 @@ pub fn write(texture: &Texture, payload: &[u8], metadata: &[(&str, &str)]) -> Op
     }
     out.extend([0; 16]); // no data of a supercompression
     for (mip, place) in places.iter().enumerate() {
-        let bytes = texture.mip_bytes(mip as u32) as u64;
-        for value in [*place as u64, bytes, bytes] {
+        for value in [*place as u64, levels[mip].len() as u64, texture.mip_bytes(mip as u32) as u64] {
             out.extend(value.to_le_bytes());
         }
     }
@@ -61,7 +80,7 @@ pub fn write(texture: &Texture, payload: &[u8], metadata: &[(&str, &str)]) -> Op
     out.extend(kvd);
     for mip in (0..texture.mips).rev() {
         out.resize(places[mip as usize], 0);
-        out.extend(&payload[texture.mip_range(mip)]);
+        out.extend(levels[mip as usize]);
     }
     // Khronos's ktx2check 4.0 expects the padding behind the last mip too; others read up to that mip's end.
     out.resize(end.next_multiple_of(alignment), 0);

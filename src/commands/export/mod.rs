@@ -1,6 +1,6 @@
 //! `glint-bake export`: what a pack holds as files that engines and other programs load, and a JSON beside them.
 
-mod exr;
+pub(super) mod exr;
 mod format;
 mod sidecar;
 

@@ -1,0 +1,194 @@
+//! Flags of `glint-bake textures`.
+
+use super::encode::{Format, Layout};
+use super::target::{Channel, Stored, Target};
+use crate::cli::normal_maps::{InputFlags, NormalY, check_name, name_of_file};
+use crate::cli::values;
+use crate::exit::Failure;
+use clap::ValueEnum;
+use std::path::PathBuf;
+
+/// Lines that `--help` shows and a test runs.
+const EXAMPLES: &str = "\
+Examples:
+  glint-bake textures flakes.png -o textures
+  glint-bake textures flakes.png --roughness 0.3 --target unreal --format png -o textures
+  glint-bake textures flakes.png --roughness-map scratches.png --roughness-channel b --target unity --format dds -o textures";
+
+/// Write a normal map and its roughness as textures whose mips are filtered, for any engine
+///
+/// Each mip has the normals, and the roughness whose highlight is nearest to that of all normals under a texel, each of the material's
+/// own roughness. No shader changes: load them in place of the textures that the engine would make mips of. DIR gets NAME_normal and,
+/// by --target, NAME_orm, NAME_mask or NAME_roughness, and NAME.json, which lists them.
+#[derive(clap::Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Normal map: PNG, TGA, JPEG, TIFF, WebP or EXR
+    #[arg(value_name = "NORMAL_MAP")]
+    pub map: PathBuf,
+    /// Folder to write into; it is created
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// What names of files begin with [default: the normal map's name]
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<String>,
+
+    /// Roughness of the material, as --roughness-is says, the same everywhere
+    #[arg(long, value_name = "VALUE", default_value = "0.5", value_parser = unit, conflicts_with = "roughness_map")]
+    #[arg(help_heading = "Material")]
+    pub roughness: f32,
+    /// Roughness of the material, a map
+    #[arg(long, value_name = "MAP", help_heading = "Material")]
+    pub roughness_map: Option<PathBuf>,
+    /// Channel of --roughness-map to use [default: the only one]
+    #[arg(long, value_name = "CHANNEL", requires = "roughness_map", help_heading = "Material")]
+    pub roughness_channel: Option<ChannelArg>,
+    /// What --roughness and --roughness-map hold
+    #[arg(long, value_name = "KIND", default_value = "perceptual", help_heading = "Material")]
+    pub roughness_is: Stored,
+    /// Occlusion, a map [default: 1 everywhere]
+    #[arg(long, value_name = "MAP", help_heading = "Material")]
+    pub occlusion: Option<PathBuf>,
+    /// Channel of --occlusion to use [default: the only one]
+    #[arg(long, value_name = "CHANNEL", requires = "occlusion", help_heading = "Material")]
+    pub occlusion_channel: Option<ChannelArg>,
+    /// Metallic, a map [default: 1 everywhere, so that the engine's factor rules]
+    #[arg(long, value_name = "MAP", help_heading = "Material")]
+    pub metallic: Option<PathBuf>,
+    /// Channel of --metallic to use [default: the only one]
+    #[arg(long, value_name = "CHANNEL", requires = "metallic", help_heading = "Material")]
+    pub metallic_channel: Option<ChannelArg>,
+
+    /// Engine, which says the channels, how roughness is stored, and which way green points
+    #[arg(long, value_name = "ENGINE", default_value = "gltf", help_heading = "Output")]
+    pub target: Target,
+    /// Kind of files
+    #[arg(long, value_name = "FORMAT", default_value = "ktx2", help_heading = "Output")]
+    pub format: Format,
+    /// Bits a channel, 8 or 16; EXR has half floats
+    #[arg(long, value_name = "BITS", default_value = "8", value_parser = bits, help_heading = "Output")]
+    pub bits: u32,
+    /// Compress the levels of KTX2 files with Zstandard
+    #[arg(long, help_heading = "Output")]
+    pub zstd: bool,
+    /// Write x and y of normals only, in red and green
+    #[arg(long, help_heading = "Output")]
+    pub two_channel: bool,
+    /// Which way green points in the file [default: as the engine has it]
+    #[arg(long, value_name = "AXIS", help_heading = "Output")]
+    pub output_y: Option<NormalY>,
+    /// How roughness is stored [default: as the engine has it]
+    #[arg(long, value_name = "KIND", help_heading = "Output")]
+    pub store: Option<Stored>,
+
+    /// How the map is read.
+    #[command(flatten)]
+    pub input: InputFlags,
+
+    /// Threads to use [default: one a core]
+    ///
+    /// The files are the same for any number.
+    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024), help_heading = "Run")]
+    pub threads: Option<u32>,
+    /// Most bytes to hold for one map, and for one texture, as in 512M
+    #[arg(long, value_name = "BYTES", default_value = "4G", value_parser = values::bytes, help_heading = "Run")]
+    pub max_memory: u64,
+    /// Write the inputs that NAME.json depends on, in Make's syntax
+    #[arg(long, value_name = "FILE", help_heading = "Run")]
+    pub depfile: Option<PathBuf>,
+    /// Check everything, say what would be done, write nothing
+    #[arg(short = 'n', long, conflicts_with = "json", help_heading = "Run")]
+    pub dry_run: bool,
+    /// Print the list of files to standard output
+    #[arg(long, help_heading = "Run")]
+    pub json: bool,
+}
+
+/// A column of a texel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[allow(missing_docs)] // The flag's help says it.
+pub enum ChannelArg {
+    R,
+    G,
+    B,
+    A,
+}
+
+fn unit(text: &str) -> Result<f32, String> {
+    match text.parse() {
+        Ok(value) if (0.0..=1.0).contains(&value) => Ok(value),
+        _ => Err(format!("expected 0 to 1, found {text}")),
+    }
+}
+
+fn bits(text: &str) -> Result<u32, String> {
+    match text {
+        "8" => Ok(8),
+        "16" => Ok(16),
+        _ => Err(format!("expected 8 or 16, found {text}")),
+    }
+}
+
+impl Args {
+    /// What names of files begin with.
+    ///
+    /// # Errors
+    /// Usage, when it cannot be part of a file's name.
+    pub fn stem(&self) -> Result<String, Failure> {
+        let Some(name) = &self.name else { return Ok(name_of_file(&self.map)) };
+        check_name(name)?;
+        if name.contains(['/', '\\']) || name.starts_with('.') {
+            return Err(Failure::usage(format!(
+                "--name: expected a part of a file's name, found {name:?}; folders go to -o"
+            )));
+        }
+        Ok(name.clone())
+    }
+
+    /// How files are stored.
+    ///
+    /// # Errors
+    /// Usage, for flags that the format has no use for.
+    pub fn layout(&self) -> Result<Layout, Failure> {
+        if self.zstd && self.format != Format::Ktx2 {
+            return Err(Failure::usage("--zstd: is for --format ktx2; leave it out"));
+        }
+        if self.bits == 16 && self.format == Format::Exr {
+            return Err(Failure::usage("--bits: EXR files have half floats; leave it out"));
+        }
+        Ok(Layout { format: self.format, bits: self.bits, zstd: self.zstd })
+    }
+
+    /// Whether green points down in the files.
+    pub fn green_down(&self) -> bool {
+        self.output_y.map_or(self.target.green_down(), |axis| axis == NormalY::Down)
+    }
+
+    /// How roughness is stored in the files.
+    pub fn stored(&self) -> Stored {
+        self.store.unwrap_or(self.target.stored())
+    }
+
+    /// All files that are read.
+    pub fn inputs(&self) -> Vec<PathBuf> {
+        let maps = [Some(&self.map), self.roughness_map.as_ref(), self.occlusion.as_ref(), self.metallic.as_ref()];
+        let mut inputs: Vec<PathBuf> = Vec::new();
+        for path in maps.into_iter().flatten() {
+            // One file may hold several of them, in its channels.
+            if !inputs.contains(path) {
+                inputs.push(path.clone());
+            }
+        }
+        inputs
+    }
+
+    /// Textures beside the normals; generic targets have none for what is 1 everywhere.
+    pub fn companions(&self) -> Vec<(&'static str, &'static [Channel])> {
+        let is_given = |channels: &[Channel]| match channels {
+            [Channel::Occlusion] => self.occlusion.is_some(),
+            [Channel::Metallic] => self.metallic.is_some(),
+            _ => true,
+        };
+        self.target.files().iter().copied().filter(|(_, channels)| is_given(channels)).collect()
+    }
+}
