@@ -132,7 +132,7 @@ pub(super) fn nearest(
 }
 
 /// Factors of the broadening that a walk tries, down and up.
-const WALK: [f32; 4] = [2.0, 1.414_213_5, 1.189_207_1, 1.090_507_7];
+const WALK: [f32; 4] = [2.0, std::f32::consts::SQRT_2, 1.189_207_1, 1.090_507_7];
 
 /// The lobe of this normal with the least error, and the error.
 fn narrowed(begin: Lobe, least: f32, walk: &[f32], samples: &[Samples], seen: &[Seen]) -> (Lobe, f32) {

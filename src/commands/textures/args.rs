@@ -13,7 +13,7 @@ const EXAMPLES: &str = "\
 Examples:
   glint-bake textures flakes.png -o textures
   glint-bake textures flakes.png --roughness 0.3 --target unreal --format png -o textures
-  glint-bake textures flakes.png --roughness-map scratches.png --roughness-channel b --target unity --format dds -o textures";
+  glint-bake textures flakes.png --roughness-map flakes.png --roughness-channel b -o textures";
 
 /// Write a normal map and its roughness as textures whose mips are filtered, for any engine
 ///

@@ -88,9 +88,8 @@ impl List {
 /// Options that the files depend on.
 fn options(args: &Args) -> OptionList {
     let mut options = OptionList::default();
-    match &args.roughness_map {
-        None => options.push("roughness", args.roughness),
-        Some(_) => {}
+    if args.roughness_map.is_none() {
+        options.push("roughness", args.roughness);
     }
     options.push_choice("roughness-is", &args.roughness_is);
     let channels = [
