@@ -4,6 +4,7 @@ use crate::error::{BakeError, Result};
 use bytemuck::Pod;
 use glint_formats::{FourCc, Pack, params};
 use serde::de::DeserializeOwned;
+use std::borrow::Cow;
 
 /// Names that have a section of this kind.
 pub(crate) fn names_with(pack: &Pack, kind: FourCc) -> Vec<&str> {
@@ -12,14 +13,18 @@ pub(crate) fn names_with(pack: &Pack, kind: FourCc) -> Vec<&str> {
 
 /// Payload of a section.
 pub(crate) fn bytes(pack: &Pack, kind: FourCc, name: &str) -> Result<Vec<u8>> {
+    payload(pack, kind, name).map(Cow::into_owned)
+}
+
+/// Payload of a section, where it lies if it is not compressed.
+fn payload<'a>(pack: &'a Pack, kind: FourCc, name: &str) -> Result<Cow<'a, [u8]>> {
     let entry = pack.find(kind, name).ok_or_else(|| BakeError::BadInput(format!("'{name}' has no section {kind}")))?;
-    let payload = pack.payload(entry).map_err(|issue| BakeError::BadInput(issue.to_string()))?;
-    Ok(payload.into_owned())
+    pack.payload(entry).map_err(|issue| BakeError::BadInput(issue.to_string()))
 }
 
 /// Records of a buffer or texels of a texture.
 pub(crate) fn records<T: Pod>(pack: &Pack, kind: FourCc, name: &str) -> Result<Vec<T>> {
-    let bytes = bytes(pack, kind, name)?;
+    let bytes = payload(pack, kind, name)?;
     if bytes.len() % size_of::<T>() != 0 {
         return Err(BakeError::BadInput(format!("section {kind} of '{name}' does not hold whole records")));
     }
@@ -28,6 +33,6 @@ pub(crate) fn records<T: Pod>(pack: &Pack, kind: FourCc, name: &str) -> Result<V
 
 /// Parameters in a section.
 pub(crate) fn parameters<T: DeserializeOwned>(pack: &Pack, kind: FourCc, name: &str) -> Result<T> {
-    params::decode(&bytes(pack, kind, name)?)
+    params::decode(&payload(pack, kind, name)?)
         .map_err(|e| BakeError::BadInput(format!("section {kind} of '{name}': {e}")))
 }

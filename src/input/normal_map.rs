@@ -46,14 +46,16 @@ pub fn load_normal_map(path: &Path, options: &InputOptions) -> Result<LoadedMap,
     let bytes = read(path, options.max_memory)?;
     let (pixels, mut warnings) = guarded(path, || decode(path, &bytes, options))?;
     let orientation = pixels.stored.orientation;
-    let raw = meaning::raw_normals(path, pixels, options, &mut warnings)?;
+    // Vectors that may have to be turned are looked at as a whole.
+    let (part, rest) = if orientation.is_as_stored() { (options.crop, None) } else { (None, options.crop) };
+    let raw = meaning::raw_normals(path, pixels, part, options, &mut warnings)?;
     let raw = if options.height.is_some() {
         orientation.say_moved(&mut warnings);
         raw
     } else {
         orientation.settle(raw, options, &mut warnings)
     };
-    let raw = match options.crop {
+    let raw = match rest {
         Some(Crop { x, y, w, h }) => raw.crop(x, y, w, h).map_err(|e| from_bake(path, e))?,
         None => raw,
     };

@@ -1,7 +1,10 @@
 //! Decoded pixels with what their file says of them, as stored: nothing is decoded, signed or chosen here.
 
 use super::colour_tag::ColourTag;
+use super::options::Crop;
 use super::orientation::Orientation;
+use glint_bake_core::error::BakeError;
+use glint_bake_core::normal_map::crop_rows;
 
 /// Decoded pixels, row-major from the first row and column of the file, and how they were stored.
 pub(super) struct Pixels {
@@ -21,10 +24,17 @@ impl Pixels {
             Values::GreyAlpha(v) => Values::GreyAlpha(orientation.texels((width, height), v)),
             Values::Rgb(v) => Values::Rgb(orientation.texels((width, height), v)),
             Values::Rgba(v) => Values::Rgba(orientation.texels((width, height), v)),
+            Values::Rgb8(v) => Values::Rgb8(orientation.texels((width, height), v)),
+            Values::Rgba8(v) => Values::Rgba8(orientation.texels((width, height), v)),
         };
         let (width, height) = orientation.size((width, height));
         Pixels { width, height, values, stored }
     }
+}
+
+/// The number that 8 bits stand for.
+pub(super) fn unorm8(v: u8) -> f32 {
+    v as f32 / 255.0
 }
 
 /// Stored values: 0…1 where they were whole numbers (v / (2ᵇ − 1)), as they are where they were floats.
@@ -37,6 +47,10 @@ pub(super) enum Values {
     Rgb(Vec<[f32; 3]>),
     /// Three channels and alpha.
     Rgba(Vec<[f32; 4]>),
+    /// Three channels of 8 bits, as most maps have them: a quarter of the memory, and no work where they are not looked at.
+    Rgb8(Vec<[u8; 3]>),
+    /// Three channels and alpha of 8 bits.
+    Rgba8(Vec<[u8; 4]>),
 }
 
 impl Values {
@@ -47,6 +61,8 @@ impl Values {
             Values::GreyAlpha(v) => v.len(),
             Values::Rgb(v) => v.len(),
             Values::Rgba(v) => v.len(),
+            Values::Rgb8(v) => v.len(),
+            Values::Rgba8(v) => v.len(),
         }
     }
 
@@ -57,6 +73,11 @@ impl Values {
             Values::GreyAlpha(v) => [v[at][0], v[at][0], v[at][0], v[at][1]],
             Values::Rgb(v) => [v[at][0], v[at][1], v[at][2], 1.0],
             Values::Rgba(v) => v[at],
+            Values::Rgb8(v) => {
+                let [r, g, b] = v[at].map(unorm8);
+                [r, g, b, 1.0]
+            }
+            Values::Rgba8(v) => v[at].map(unorm8),
         }
     }
 
@@ -65,9 +86,25 @@ impl Values {
         (0..self.len()).map(|at| self.texel(at))
     }
 
+    /// The texels of a rectangle of an image that is `of` large.
+    ///
+    /// # Errors
+    /// Those of [`crop_rows`].
+    pub fn crop(&self, of: (u32, u32), Crop { x, y, w, h }: Crop) -> Result<Values, BakeError> {
+        let (from, size) = ((x, y), (w, h));
+        Ok(match self {
+            Values::Grey(v) => Values::Grey(crop_rows(v, of, from, size)?),
+            Values::GreyAlpha(v) => Values::GreyAlpha(crop_rows(v, of, from, size)?),
+            Values::Rgb(v) => Values::Rgb(crop_rows(v, of, from, size)?),
+            Values::Rgba(v) => Values::Rgba(crop_rows(v, of, from, size)?),
+            Values::Rgb8(v) => Values::Rgb8(crop_rows(v, of, from, size)?),
+            Values::Rgba8(v) => Values::Rgba8(crop_rows(v, of, from, size)?),
+        })
+    }
+
     /// Whether texels have an alpha of their own.
     pub fn has_alpha(&self) -> bool {
-        matches!(self, Values::GreyAlpha(_) | Values::Rgba(_))
+        matches!(self, Values::GreyAlpha(_) | Values::Rgba(_) | Values::Rgba8(_))
     }
 
     /// Whether the three colours are one channel.

@@ -14,7 +14,7 @@ use super::error::InputError;
 use super::limits::check_size;
 use super::options::InputOptions;
 use super::orientation::Orientation;
-use super::pixels::{Pixels, Stored, Values};
+use super::pixels::{Pixels, Stored, Values, unorm8};
 use zune_core::bytestream::ZCursor;
 use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;
@@ -61,8 +61,8 @@ pub(super) fn decode(
     };
     let values = match values(path, image)? {
         // The fourth byte of such a texel is padding.
-        Values::Rgba(v) if format == ImageFormat::Tga && !tga_has_alpha(bytes) => {
-            Values::Rgb(v.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
+        Values::Rgba8(v) if format == ImageFormat::Tga && !tga_has_alpha(bytes) => {
+            Values::Rgb8(v.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
         }
         values => values,
     };
@@ -226,17 +226,17 @@ fn tga_has_alpha(bytes: &[u8]) -> bool {
     kind().is_none_or(|kind| kind >= 3)
 }
 
-/// Channels as floats.
+/// Channels, as floats where they are none of the usual 8 bits.
 fn values(path: &Path, image: DynamicImage) -> Result<Values, InputError> {
-    let unorm8 = |v: u8| v as f32 / 255.0;
     let unorm16 = |v: u16| v as f32 / 65535.0;
+    let texels = image.width() as usize * image.height() as usize;
     Ok(match image {
         DynamicImage::ImageLuma8(i) => Values::Grey(i.pixels().map(|p| unorm8(p[0])).collect()),
         DynamicImage::ImageLumaA8(i) => Values::GreyAlpha(i.pixels().map(|p| p.0.map(unorm8)).collect()),
         DynamicImage::ImageLuma16(i) => Values::Grey(i.pixels().map(|p| unorm16(p[0])).collect()),
         DynamicImage::ImageLumaA16(i) => Values::GreyAlpha(i.pixels().map(|p| p.0.map(unorm16)).collect()),
-        DynamicImage::ImageRgb8(i) => Values::Rgb(i.pixels().map(|p| p.0.map(unorm8)).collect()),
-        DynamicImage::ImageRgba8(i) => Values::Rgba(i.pixels().map(|p| p.0.map(unorm8)).collect()),
+        DynamicImage::ImageRgb8(i) => Values::Rgb8(i.as_raw().as_chunks().0[..texels].to_vec()),
+        DynamicImage::ImageRgba8(i) => Values::Rgba8(i.as_raw().as_chunks().0[..texels].to_vec()),
         DynamicImage::ImageRgb16(i) => Values::Rgb(i.pixels().map(|p| p.0.map(unorm16)).collect()),
         DynamicImage::ImageRgba16(i) => Values::Rgba(i.pixels().map(|p| p.0.map(unorm16)).collect()),
         other => {

@@ -17,6 +17,7 @@ use super::baked::Dictionary;
 use super::options::DictionaryOptions;
 use crate::error::BakeError;
 use crate::progress::Progress;
+use multiversion::multiversion;
 use rand::Rng;
 use rand_pcg::Pcg32;
 use std::ops::AddAssign;
@@ -97,21 +98,17 @@ fn bake_counted<C: Count>(
     let mut draws = Draws::new(options.seed, options.marginals);
     let mut table = vec![0f64; entries];
     let mut counts = vec![C::default(); n * sub_bins];
-    let mut block = vec![0u32; n * BLOCK];
+    let mut block = vec![[0u32; BLOCK]; n];
     let mut spread = vec![0f64; kernel.spread_len(entries)];
     let mut lobe = 0;
     for level in EXACT_LEVEL + 1..options.levels {
         while lobe < 1 << level {
             for j in 0..BLOCK {
-                let uniform = draws.lobe(lobe);
-                for i in 0..n {
-                    block[i * BLOCK + j] = quantiles.sub_bin(uniform[i]) as u32;
-                }
+                quantiles.find_sub_bins(draws.lobe(lobe), j, &mut block);
                 lobe += 1;
             }
-            for i in 0..n {
-                let row = &mut counts[i * sub_bins..][..sub_bins];
-                for sub_bin in &block[i * BLOCK..][..BLOCK] {
+            for (row, found) in counts.chunks_exact_mut(sub_bins).zip(&block) {
+                for sub_bin in found {
                     row[*sub_bin as usize] += C::from(1);
                 }
             }
@@ -189,7 +186,7 @@ struct MeanQuantiles {
     /// d(mean) / d(uniform) at the same edges, per unit of 2^−32.
     slopes: Vec<f64>,
     /// For the leading bits of a uniform number: the sub-bin of the smallest such number, and the last number in it.
-    guide: Vec<(u32, u32)>,
+    guide: Box<[(u32, u32); 1 << GUIDE_BITS]>,
     /// First uniform number whose leading bits span more than two sub-bins.
     tail: u32,
 }
@@ -213,15 +210,15 @@ impl MeanQuantiles {
             edges.push((cdf * 4_294_967_296.0).round() as u64);
             slopes.push(1.0 / (density * 4_294_967_296.0));
         }
-        let mut guide = Vec::with_capacity(1 << GUIDE_BITS);
+        let mut guide = Box::new([(0, 0); 1 << GUIDE_BITS]);
         let mut tail = u32::MAX;
         let mut j = 0;
-        for g in 0..1u64 << GUIDE_BITS {
+        for (g, entry) in (0u64..).zip(guide.iter_mut()) {
             let (first, next) = (g << (32 - GUIDE_BITS), (g + 1) << (32 - GUIDE_BITS));
             while edges[j + 1] <= first {
                 j += 1;
             }
-            guide.push((j as u32, (edges[j + 1] - 1) as u32));
+            *entry = (j as u32, (edges[j + 1] - 1) as u32);
             if j + 2 < edges.len() && edges[j + 2] < next {
                 tail = tail.min(first as u32);
             }
@@ -242,6 +239,15 @@ impl MeanQuantiles {
             }
         }
         j
+    }
+
+    /// Sub-bins of one lobe of all marginals, as entry `j` of their blocks. A function of its own, so that nothing it reads is
+    /// read anew for each number.
+    #[inline(never)]
+    fn find_sub_bins(&self, uniform: &[u32], j: usize, block: &mut [[u32; BLOCK]]) {
+        for (found, &uniform) in block.iter_mut().zip(uniform) {
+            found[j] = self.sub_bin(uniform) as u32;
+        }
     }
 
     /// Lobe mean of a uniform number: the inverse of the CDF, as the cubic through two edges with its slopes there.
@@ -299,15 +305,19 @@ impl Kernel {
             }
         }
         table.fill(0.0);
-        for q in 0..2 * self.pad + 1 {
-            for s in 0..self.per_entry {
-                let tap = self.taps[q * self.per_entry + s];
-                let source = &spread[s * row + q..][..entries];
-                for b in 0..entries {
-                    table[b] += tap * source[b];
-                }
+        for (q, taps) in self.taps.chunks_exact(self.per_entry).enumerate() {
+            for (s, tap) in taps.iter().enumerate() {
+                add_scaled(table, *tap, &spread[s * row + q..][..entries]);
             }
         }
+    }
+}
+
+/// `table[b] += tap · source[b]`; each product is rounded before it is added, whatever the processor has.
+#[multiversion(targets("x86_64+avx2", "x86_64+avx"))]
+fn add_scaled(table: &mut [f64], tap: f64, source: &[f64]) {
+    for (sum, value) in table.iter_mut().zip(source) {
+        *sum += tap * value;
     }
 }
 
@@ -362,16 +372,16 @@ impl Draws {
 
     fn draw(&mut self, item: u32) {
         let mut rng = Pcg32::new(stream_state(self.seed, item), u64::from(item));
-        let n = self.order.len() as u64;
-        for j in 0..self.order.len() {
+        let order = self.order.as_mut_slice();
+        for j in 0..order.len() {
             let r = ((u64::from(rng.next_u32()) * (j as u64 + 1)) >> 32) as usize;
-            self.order[j] = self.order[r];
-            self.order[r] = j as u32;
+            order[j] = order[r];
+            order[r] = j as u32;
         }
-        let width = (1u64 << 32) / n;
-        for i in 0..self.order.len() {
+        let width = (1u64 << 32) / order.len() as u64;
+        for (uniform, &stratum) in self.uniform.iter_mut().zip(&*order) {
             let within = (u64::from(rng.next_u32()) * width) >> 32;
-            self.uniform[i] = (u64::from(self.order[i]) * width + within) as u32;
+            *uniform = (u64::from(stratum) * width + within) as u32;
         }
     }
 }

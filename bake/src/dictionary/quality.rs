@@ -139,7 +139,8 @@ pub fn integral_linear(table: &[f64], spacing: f64) -> f64 {
 pub fn read_linear(table: &[f64], spacing: f64, x: f64) -> f64 {
     let last = table.len() - 1;
     let t = (x / spacing - 0.5).clamp(0.0, last as f64);
-    let low = (t.floor() as usize).min(last);
+    // Not negative, so that the integer below it is what a cast leaves.
+    let low = (t as usize).min(last);
     let high = (low + 1).min(last);
     table[low] + (table[high] - table[low]) * (t - low as f64)
 }

@@ -16,6 +16,6 @@ mod validate;
 mod tests;
 
 pub use map::NormalMap;
-pub use raw::{GreenAxis, NormalOptions, RawNormals, ZERO_LENGTH, lifted};
+pub use raw::{GreenAxis, NormalOptions, RawNormals, ZERO_LENGTH, crop_rows, lifted};
 pub use report::{NormalReport, SEAM_RATIO, SeamRatio};
 pub use validate::{HORIZON, MAX_BELOW_HORIZON, MAX_ZERO_LENGTH};

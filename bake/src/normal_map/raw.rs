@@ -130,8 +130,11 @@ pub(super) fn check_count(width: u32, height: u32, entries: usize) -> Result<()>
     Ok(())
 }
 
-/// The texels of a rectangle, row by row.
-pub(super) fn crop_rows<T: Copy>(texels: &[T], of: (u32, u32), from: (u32, u32), size: (u32, u32)) -> Result<Vec<T>> {
+/// The texels of a rectangle that is `size` large and begins at `from`, row by row, out of an image that is `of` large.
+///
+/// # Errors
+/// `BadOption` when the rectangle is empty or leaves the image.
+pub fn crop_rows<T: Copy>(texels: &[T], of: (u32, u32), from: (u32, u32), size: (u32, u32)) -> Result<Vec<T>> {
     let inside = |start: u32, length: u32, whole: u32| length > 0 && start as u64 + length as u64 <= whole as u64;
     if !inside(from.0, size.0, of.0) || !inside(from.1, size.1, of.1) {
         return Err(BakeError::BadOption(format!(

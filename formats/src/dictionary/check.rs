@@ -1,12 +1,14 @@
 //! Checks the contents of dictionary sections: what a shader relies on when it reads a marginal.
 
-use crate::bytes::{f16_at, u16_at, u32_at};
+use crate::bytes::{u16_at, u32_at};
 use crate::container::Resource;
 use crate::dictionary::{
     DictionaryParams, DictionaryUniform, MAX_TABLE_SIDE, MAX_TABLE_WORDS, PARAMS, ROW_TOLERANCE, TABLE, UNIFORM,
 };
 use crate::issue::{Issue, IssueCode};
 use crate::sections::{Loaded, Sections};
+use half::f16;
+use half::slice::HalfFloatSliceExt;
 
 /// Checks every dictionary.
 pub(crate) fn check(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
@@ -85,11 +87,20 @@ fn check_table(table: Loaded<'_>, params: &DictionaryParams, issues: &mut Vec<Is
     let spacing = params.domain / f64::from(params.entries);
     let (rows, end) = table.payload.split_at(4 * params.table_entries() as usize);
     let mut first_unequal = None;
-    for (row, bytes) in rows.chunks_exact(4 * params.entries as usize).enumerate() {
-        let last = params.entries as usize - 1;
+    let entries = params.entries as usize;
+    let mut halves = vec![f16::ZERO; entries + 1];
+    let mut values = vec![0.0; entries];
+    for (row, bytes) in rows.chunks_exact(4 * entries).enumerate() {
+        for (half, pair) in halves.iter_mut().zip(bytes.chunks_exact(4)) {
+            *half = f16::from_bits(u16_at(pair, 0));
+        }
+        // The last entry is its own neighbour.
+        halves[entries] = halves[entries - 1];
+        // A row at once: each call asks the processor what it can do.
+        halves[..entries].convert_to_f32_slice(&mut values);
         let mut sum = 0.0;
-        for entry in 0..=last {
-            let value = f64::from(f16_at(bytes, 4 * entry));
+        for (entry, pair) in bytes.chunks_exact(4).enumerate() {
+            let value = f64::from(values[entry]);
             if !(value >= 0.0 && value.is_finite()) {
                 let message = format!(
                     "entry {entry} of row {row}: expected a finite density that is not negative, found {value}"
@@ -97,9 +108,9 @@ fn check_table(table: Loaded<'_>, params: &DictionaryParams, issues: &mut Vec<Is
                 issues.push(table.error(IssueCode::DictionaryValue, message));
                 return;
             }
-            let next = u16_at(bytes, 4 * last.min(entry + 1));
-            if u16_at(bytes, 4 * entry + 2) != next {
-                let word = u32_at(bytes, 4 * entry);
+            let next = halves[entry + 1].to_bits();
+            if u16_at(pair, 2) != next {
+                let word = u32_at(pair, 0);
                 let message = format!(
                     "entry {entry} of row {row}: expected the next one, {next:#06x}, in the upper half, found {word:#010x}"
                 );

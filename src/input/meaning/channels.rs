@@ -62,9 +62,9 @@ struct Ranges {
 }
 
 impl Ranges {
-    fn of(values: &Values, coverage: &Coverage) -> Ranges {
+    fn of(painted: impl Iterator<Item = [f32; 4]>) -> Ranges {
         let mut ranges = Ranges { least: [f32::INFINITY; 4], most: [f32::NEG_INFINITY; 4], colourful: 0.0, texels: 0 };
-        for texel in values.texels().filter(|texel| !coverage.is_unpainted(texel)) {
+        for texel in painted {
             for (channel, &v) in texel.iter().enumerate() {
                 ranges.least[channel] = ranges.least[channel].min(v);
                 ranges.most[channel] = ranges.most[channel].max(v);
@@ -118,22 +118,27 @@ fn wrong_z(values: &Values, scale: Scale, coverage: &Coverage, transfer: &Transf
     painted.map(|texel| u64::from(is_wrong(texel))).sum()
 }
 
-/// Refuses maps of two channels that are to be read as three.
+/// Refuses maps of two channels that are to be read as three; `sample` has some of the painted texels.
 pub(super) fn refuse_two(
     path: &Path,
     values: &Values,
+    sample: &[[f32; 4]],
     stored: &Stored,
     scale: Scale,
     coverage: &Coverage,
 ) -> Result<(), InputError> {
-    let ranges = Ranges::of(values, coverage);
     let tolerance = if stored.lossy.is_some() { CONSTANT_LOSSY } else { CONSTANT };
+    // Nearly all maps end here. Other texels can only widen the ranges: what varies here varies.
+    let of_sample = Ranges::of(sample.iter().copied());
+    if of_sample.of_channel(2) > tolerance && !(values.has_alpha() && of_sample.colourful <= tolerance) {
+        return Ok(());
+    }
+    let ranges = Ranges::of(values.texels().filter(|texel| !coverage.is_unpainted(texel)));
     let constant = |channel: usize| ranges.of_channel(channel) <= tolerance;
     let one_colour = ranges.colourful <= tolerance;
     let rest_is_constant = constant(2) && (constant(0) || constant(1));
     let in_alpha = values.has_alpha() && !constant(3) && (one_colour || rest_is_constant);
     let pair = constant(2) && (!constant(0) || !constant(1));
-    // Nearly all maps end here, so that no more is asked of their texels.
     if ranges.texels == 0 || !(in_alpha || pair) {
         return Ok(());
     }

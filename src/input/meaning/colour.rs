@@ -14,7 +14,7 @@ use super::lengths::Fit;
 use super::scale::Scale;
 use crate::input::colour_tag::Claim;
 use crate::input::error::InputError;
-use crate::input::options::{ColourSpace, InputOptions};
+use crate::input::options::{Channels, ColourSpace, InputOptions};
 use crate::input::pixels::Stored;
 use crate::input::transfer::Transfer;
 use std::path::Path;
@@ -26,19 +26,22 @@ const UNIT: f64 = 0.05;
 const MAX_LEAN: f64 = 20.0;
 const MAX_DEVIATION: f64 = 0.2;
 
+/// Degrees that the mean of a sample may lean away from that of all.
+const LEAN_OF_SAMPLE: f64 = 5.0;
+
 const NO_FIT: Fit = Fit { deviation: 1.0, lean: 180.0 };
 
 fn is_right(fit: Fit) -> bool {
     fit.deviation <= UNIT || (fit.lean <= MAX_LEAN && fit.deviation <= MAX_DEVIATION)
 }
 
-/// The curve to undo, decided for the texels that are painted.
+/// The curve to undo, decided for the texels that are painted, of which `sample` has some.
 pub(super) fn transfer<T: Iterator<Item = [f32; 4]>>(
     path: &Path,
+    sample: impl Iterator<Item = [f32; 4]>,
     painted: impl Fn() -> T,
     stored: &Stored,
     scale: Scale,
-    two: bool,
     options: &InputOptions,
     notes: &mut Vec<String>,
 ) -> Result<Transfer, InputError> {
@@ -49,14 +52,17 @@ pub(super) fn transfer<T: Iterator<Item = [f32; 4]>>(
     if let Some(transfer) = asked(claim, options, notes) {
         return Ok(transfer);
     }
-    if two {
+    if options.channels.and_then(Channels::two).is_some() {
         notes.extend(claim.map(|claim| unjudged(claim, "two channels have no lengths to judge that by")));
         return Ok(Transfer::Linear);
     }
-    let fit = |transfer: &Transfer| {
-        let vector = |[r, g, b, _]: [f32; 4]| [r, g, b].map(|v| scale.signed(transfer.decode(v)));
-        Fit::of(painted().map(vector)).unwrap_or(NO_FIT)
-    };
+    let vector = |[r, g, b, _]: [f32; 4], transfer: &Transfer| [r, g, b].map(|v| scale.signed(transfer.decode(v)));
+    // Nearly all maps end here. Lengths that are told are those of all texels.
+    let of_sample = |fit: Fit| is_right(Fit { lean: fit.lean + LEAN_OF_SAMPLE, ..fit });
+    if claim.is_none() && Fit::cautious(sample.map(|texel| vector(texel, &Transfer::Linear))).is_some_and(of_sample) {
+        return Ok(Transfer::Linear);
+    }
+    let fit = |transfer: &Transfer| Fit::of(painted().map(|texel| vector(texel, transfer))).unwrap_or(NO_FIT);
     let plain = fit(&Transfer::Linear);
     let percent = |fit: Fit| format!("{:.1} %", 100.0 * fit.deviation);
     let Some(Claim { tag, transfer }) = claim else {

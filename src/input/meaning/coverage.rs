@@ -12,11 +12,11 @@
 use super::lengths::Fit;
 use super::scale::Scale;
 use crate::input::error::InputError;
-use crate::input::pixels::{Stored, Values};
+use crate::input::pixels::{Stored, Values, unorm8};
 use std::path::Path;
 
-/// Largest value that a lossy codec makes of black.
-const NEARLY_BLACK: f32 = 8.0 / 255.0;
+/// Largest value of 8 bits that a lossy codec makes of black.
+const NEARLY_BLACK: u8 = 8;
 
 /// Share of texels with an alpha of 0 or 1 from which on alpha can be coverage.
 const COVERAGE: f64 = 0.9;
@@ -44,12 +44,26 @@ pub(super) struct Coverage {
 /// When a texel is black.
 struct Black {
     columns: [usize; 3],
-    tolerance: f32,
+    /// Largest black value of 8 bits.
+    tolerance: u8,
 }
 
 impl Black {
     fn is(&self, texel: &[f32; 4]) -> bool {
-        self.columns.iter().all(|&column| texel[column].abs() <= self.tolerance)
+        let tolerance = unorm8(self.tolerance);
+        self.columns.iter().all(|&column| texel[column].abs() <= tolerance)
+    }
+
+    /// Number of black texels.
+    fn count(&self, values: &Values) -> u64 {
+        match values {
+            Values::Rgb8(texels) if self.columns == [0, 1, 2] => {
+                // Without a branch, so that many texels are compared at once.
+                let is = |[r, g, b]: &[u8; 3]| (*r.max(g).max(b) <= self.tolerance) as u32;
+                texels.chunks(1 << 16).map(|texels| u64::from(texels.iter().map(is).sum::<u32>())).sum()
+            }
+            values => values.texels().map(|texel| u64::from(self.is(&texel))).sum(),
+        }
     }
 }
 
@@ -57,17 +71,21 @@ impl Coverage {
     /// Looks at a file of which all colours, or these two columns, are used.
     pub fn of(values: &Values, stored: &Stored, scale: Scale, two: Option<[usize; 2]>) -> Coverage {
         let columns = two.map_or([0, 1, 2], |[x, y]| [x, y, y]);
-        let tolerance = if stored.lossy.is_some() { NEARLY_BLACK } else { 0.0 };
+        let tolerance = if stored.lossy.is_some() { NEARLY_BLACK } else { 0 };
         let black = (two.is_none() || scale == Scale::Unsigned).then_some(Black { columns, tolerance });
         let is_black = |texel: &[f32; 4]| black.as_ref().is_some_and(|black| black.is(texel));
         let transparent = two.is_none() && values.has_alpha() && alpha_is_coverage(values, scale, is_black);
-        let (mut black_texels, mut transparent_texels) = (0, 0);
-        for texel in values.texels() {
-            let is_black = is_black(&texel);
-            black_texels += u64::from(is_black);
-            transparent_texels += u64::from(!is_black && transparent && texel[3] == 0.0);
-        }
+        let black_texels = black.as_ref().map_or(0, |black| black.count(values));
+        let transparent_texels = match transparent {
+            true => values.texels().filter(|texel| texel[3] == 0.0 && !is_black(texel)).count() as u64,
+            false => 0,
+        };
         Coverage { black, transparent, black_texels, transparent_texels, texels: values.len() as u64 }
+    }
+
+    /// Whether all texels are painted.
+    pub fn is_whole(&self) -> bool {
+        self.black_texels + self.transparent_texels == 0
     }
 
     /// Whether a texel of this file is unpainted.
@@ -78,7 +96,7 @@ impl Coverage {
     /// Counts unpainted texels in a note, and refuses a picture that has nothing else.
     pub fn check(&self, path: &Path, notes: &mut Vec<String>) -> Result<(), InputError> {
         let unpainted = self.black_texels + self.transparent_texels;
-        if unpainted == 0 {
+        if self.is_whole() {
             return Ok(());
         }
         let (texels, black, transparent) = (self.texels, self.black_texels, self.transparent_texels);

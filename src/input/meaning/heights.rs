@@ -43,7 +43,7 @@ fn grey(
     match values {
         Values::Grey(heights) => return Ok(heights),
         Values::GreyAlpha(pairs) => return Ok(pairs.into_iter().map(|[grey, _]| grey).collect()),
-        Values::Rgb(_) | Values::Rgba(_) => {}
+        Values::Rgb(_) | Values::Rgba(_) | Values::Rgb8(_) | Values::Rgba8(_) => {}
     }
     // Floats may be of any size, and their roundings with them. A NaN is named with its texel later.
     let size = |a: f32| if stored.bits.is_none() { a.abs().max(1.0) } else { 1.0 };

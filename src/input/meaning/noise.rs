@@ -8,9 +8,9 @@
 //!
 //!   σ = τ √⟨(1/z⁴ + 1/z²)/2⟩.
 //!
-//! Within a factor of two, as a test holds for maps of four kinds; detail that the codec dropped altogether leaves no trace in
-//! the lengths, so that a nearly flat map of fine noise is told too little. Maps that were filtered before they were compressed
-//! have scattered lengths too, and are told too much.
+//! Taken from a sample of the texels, it is right within a factor of two, as a test holds for maps of four kinds; detail that
+//! the codec dropped altogether leaves no trace in the lengths, so that a nearly flat map of fine noise is told too little. Maps
+//! that were filtered before they were compressed have scattered lengths too, and are told too much.
 //!
 //! Roughness hides noise that it is twice as wide as: √(1 + ¼) widens a lobe by an eighth.
 
