@@ -154,7 +154,7 @@ fn threads_change_nothing() {
 
 #[test]
 fn hard_cases_stay_in_range() {
-    let edge = |i: u32, j: u32| if (i + j) % 2 == 0 { [0.999_999, 0.0] } else { [-0.999_999, 0.0] };
+    let edge = |i: u32, j: u32| if (i + j).is_multiple_of(2) { [0.999_999, 0.0] } else { [-0.999_999, 0.0] };
     for map in [
         map(1, 1, |_, _| [0.3, 0.1]),
         map(1, 13, |_, j| [0.0, 0.05 * j as f32]),

@@ -15,7 +15,7 @@ fn folder() -> tempfile::TempDir {
     RgbImage::from_fn(12, 6, |i, _| Rgb(if i % 4 < 2 { [176, 164, 240] } else { [128, 166, 249] }))
         .save(at("n.png"))
         .unwrap();
-    RgbaImage::from_fn(12, 6, |i, j| Rgba([200, 51, if (i + j) % 2 == 0 { 0 } else { 255 }, 102]))
+    RgbaImage::from_fn(12, 6, |i, j| Rgba([200, 51, if (i + j).is_multiple_of(2) { 0 } else { 255 }, 102]))
         .save(at("orm.png"))
         .unwrap();
     GrayImage::from_fn(6, 3, |_, _| Luma([128])).save(at("grey.png")).unwrap();
