@@ -20,7 +20,7 @@ struct Effort {
     offsets: Offsets,
 }
 
-/// Efforts of a level: for most texels, and for those whose facets spread further than their lobes are wide.
+/// Efforts of a level: for most texels, and for those whose facets spread far for the width of their lobes.
 struct Efforts {
     usual: Effort,
     spread: Effort,
@@ -30,9 +30,9 @@ impl Efforts {
     /// Points along an edge and half vectors by level: fine levels have many texels and few normals under each.
     fn of(level: usize) -> Efforts {
         const USUAL: [(usize, usize); 8] =
-            [(3, 64), (4, 96), (8, 128), (10, 160), (14, 192), (20, 256), (28, 384), (40, 512)];
+            [(4, 64), (5, 128), (8, 192), (12, 192), (16, 256), (24, 256), (28, 384), (40, 512)];
         const SPREAD: [(usize, usize); 8] =
-            [(4, 64), (6, 96), (8, 128), (12, 192), (14, 256), (20, 384), (28, 512), (40, 512)];
+            [(5, 128), (7, 192), (10, 256), (14, 288), (18, 384), (24, 512), (32, 512), (40, 640)];
         let of = |counts: [(usize, usize); 8]| {
             let (edge, half_vectors) = counts[(level - 1).min(counts.len() - 1)];
             Effort { points: points(edge, level > 3), offsets: Offsets::new(half_vectors) }
@@ -173,9 +173,9 @@ fn unit([x, y, z]: [f32; 3]) -> [f32; 3] {
 }
 
 /// The normal is free where the variance of normals is beyond this part of the least α².
-const FREE_FROM: f32 = 0.5;
+const FREE_FROM: f32 = 0.1;
 /// Below this part of α², the variance of normals is in the limit of small variances.
-const SMALL_VARIANCE: f32 = 0.03;
+const SMALL_VARIANCE: f32 = 0.01;
 
 /// How facets differ.
 struct Spread {
@@ -205,7 +205,7 @@ impl Spread {
         self.variance * (1.0 - self.a2) * (1.0 - self.a2)
     }
 
-    /// Whether the facets spread further than their lobes are wide.
+    /// Whether the facets spread far for the width of their lobes.
     fn is_wide(&self) -> bool {
         self.variance > FREE_FROM * self.range[0]
     }

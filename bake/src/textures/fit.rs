@@ -4,9 +4,10 @@
 //! dω_l = 4 (v·h) dω_h the sum of weighted differences of radiance is ∫|L̂ − L| dω_l. The same offsets serve every texel, by a
 //! Kronecker sequence, so that the fit has no noise from one texel to the next.
 //!
-//! α² is the least α² of the facets and a broadening on top of it. It is found by a walk downhill in ever smaller steps, from the
-//! broadening that variance asks for. Where facets spread further than their lobes are wide, the normal is free: the mode may be
-//! nearer than the mean. It leaves the mean only where that is worth [`WORTH`], so that smooth maps keep their mean normals.
+//! α² is the least α² of the facets and a broadening on top of it. It is found by steps downhill from the broadening that variance
+//! asks for, and a parabola through the last three. Where facets spread far for the width of their lobes, the normal is free: the
+//! mode may be nearer than the mean. It leaves the mean only where that is worth [`WORTH`], so that smooth maps keep their mean
+//! normals.
 //!
 //! Additions, multiplications, divisions and square roots only, in a fixed order: the same bits on every machine.
 
@@ -20,7 +21,7 @@ type Vectors = [Lanes; 3];
 /// Polar angles of the views that a highlight is fitted for, in radians.
 const VIEW_ANGLES: [f64; 4] = [0.0, 0.5, 0.9, 1.2];
 /// Part of the error that a normal other than the mean has to save.
-const WORTH: f32 = 0.04;
+const WORTH: f32 = 0.02;
 /// Least z of a free normal.
 const LEAST_Z: f32 = 0.05;
 
@@ -111,7 +112,7 @@ pub(super) fn nearest(
     shine(facets, wide, &mut scratch.samples);
     let (samples, seen) = (&scratch.samples, &mut scratch.seen);
     see(begin.normal, samples, seen);
-    let at_mean = narrowed(begin, least, &WALK, samples, seen);
+    let at_mean = narrowed(begin, least, samples, seen);
     if !is_free {
         return at_mean.0;
     }
@@ -120,55 +121,80 @@ pub(super) fn nearest(
     if mode[2] > LEAST_Z {
         see(mode, samples, seen);
         let begin = Lobe { normal: mode, a2: least + 0.25 * (at_mean.0.a2 - least) };
-        let at_mode = narrowed(begin, least, &WALK, samples, seen);
+        let at_mode = narrowed(begin, least, samples, seen);
         if at_mode.1 < best.1 {
             best = at_mode;
         }
     }
     best = moved(best, samples, seen);
     see(best.0.normal, samples, seen);
-    best = narrowed(best.0, least, &WALK[2..], samples, seen);
+    best = narrowed(best.0, least, samples, seen);
     if best.1 < (1.0 - WORTH) * at_mean.1 { best.0 } else { at_mean.0 }
 }
 
-/// Factors of the broadening that a walk tries, down and up.
-const WALK: [f32; 4] = [2.0, std::f32::consts::SQRT_2, 1.189_207_1, 1.090_507_7];
+/// Factor of the broadening from one step of the search to the next.
+const STEP: f32 = std::f32::consts::SQRT_2;
+/// Steps of the normal, in widths of the lobe.
+const TILTS: [f32; 2] = [0.5, 0.2];
 
-/// The lobe of this normal with the least error, and the error.
-fn narrowed(begin: Lobe, least: f32, walk: &[f32], samples: &[Samples], seen: &[Seen]) -> (Lobe, f32) {
-    let (mut at, mut found) = (begin, error(begin.a2, samples, seen));
-    for factor in walk {
-        for factor in [*factor, 1.0 / factor] {
-            loop {
-                let a2 = (least + (at.a2 - least) * factor).min(1.0);
-                let next = error(a2, samples, seen);
-                if next >= found {
-                    break;
-                }
-                (at.a2, found) = (a2, next);
-            }
+/// The lobe of this normal with the least error, and the error: steps downhill until three of them hold the least one, then the
+/// vertex of the parabola through these.
+fn narrowed(begin: Lobe, least: f32, samples: &[Samples], seen: &[Seen]) -> (Lobe, f32) {
+    let at = |broadening: f32| (least + broadening).min(1.0);
+    let mut broadening = begin.a2 - least;
+    let mut found = error(at(broadening), samples, seen);
+    // Errors a step above and a step below.
+    let mut sides = [error(at(broadening * STEP), samples, seen), 0.0];
+    if sides[0] < found {
+        while sides[0] < found {
+            broadening *= STEP;
+            (sides[1], found) = (found, sides[0]);
+            sides[0] = error(at(broadening * STEP), samples, seen);
+        }
+    } else {
+        sides[1] = error(at(broadening / STEP), samples, seen);
+        while sides[1] < found {
+            broadening /= STEP;
+            (sides[0], found) = (found, sides[1]);
+            sides[1] = error(at(broadening / STEP), samples, seen);
         }
     }
-    (at, found)
+    // √2 to the power of the vertex, by its series.
+    let u = 0.346_573_6 * vertex(sides[1], found, sides[0]);
+    let between = at(broadening * (1.0 + u * (1.0 + u * (0.5 + u * (1.0 / 6.0)))));
+    let error = error(between, samples, seen);
+    if error < found { (Lobe { a2: between, ..begin }, error) } else { (Lobe { a2: at(broadening), ..begin }, found) }
 }
 
-/// The lobe moved downhill across its normal, in steps of its width.
+/// Where the parabola through values at −1, 0 and 1 is least, from −1 to 1; 0 where it has no least value.
+fn vertex(before: f32, here: f32, after: f32) -> f32 {
+    let curvature = before - 2.0 * here + after;
+    if curvature > 0.0 { (0.5 * (before - after) / curvature).clamp(-1.0, 1.0) } else { 0.0 }
+}
+
+/// The lobe moved downhill across its normal, in steps of its width: to the vertices of parabolas along two axes, or to the best of
+/// the points that these were laid through.
 fn moved((mut at, mut found): (Lobe, f32), samples: &[Samples], seen: &mut Vec<Seen>) -> (Lobe, f32) {
-    for step in [0.5_f32, 0.25, 0.125] {
-        for (p, q) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0_f32)] {
-            loop {
-                let r = at.a2.sqrt() * step;
-                let normal = tilted(at.normal, r * p, r * q);
-                if normal[2] < LEAST_Z {
-                    break;
-                }
-                see(normal, samples, seen);
-                let next = error(at.a2, samples, seen);
-                if next >= found {
-                    break;
-                }
+    for step in TILTS {
+        let r = at.a2.sqrt() * step;
+        let from = at.normal;
+        let middle = found;
+        let mut try_at = |p: f32, q: f32| {
+            let normal = tilted(from, r * p, r * q);
+            if normal[2] < LEAST_Z {
+                return f32::MAX;
+            }
+            see(normal, samples, seen);
+            let next = error(at.a2, samples, seen);
+            if next < found {
                 (at.normal, found) = (normal, next);
             }
+            next
+        };
+        let [right, left, up, down] = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)].map(|(p, q)| try_at(p, q));
+        let (p, q) = (vertex(left, middle, right), vertex(down, middle, up));
+        if p != 0.0 || q != 0.0 {
+            try_at(p, q);
         }
     }
     (at, found)

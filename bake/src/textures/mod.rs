@@ -9,7 +9,7 @@
 
 pub mod bake;
 pub mod baked;
-pub mod fit;
+mod fit;
 pub mod levels;
 pub mod options;
 pub mod paper;
