@@ -9,7 +9,7 @@
 
 pub mod bake;
 pub mod baked;
-mod fit;
+pub mod fit;
 pub mod levels;
 pub mod options;
 pub mod paper;
