@@ -1,5 +1,6 @@
 //! KTX2 and DDS files, read back by other people's readers: every format, every shape, every byte.
 
+use glint_formats::export::blocks::Blocks;
 use glint_formats::export::{Texture, dds, ktx2, texel};
 use glint_formats::{Resource, vk_format};
 
@@ -127,6 +128,39 @@ fn dxgi_formats_have_the_same_components() {
             plain => plain.replace("SFLOAT", "Float").replace("UNORM", "UNorm").replace("SNORM", "SNorm"),
         };
         assert_eq!(dxgi.to_lowercase(), expected.to_lowercase());
+    }
+}
+
+/// Sizes that are no multiples of a block's have whole blocks at their edges.
+#[test]
+fn textures_in_blocks_are_read_by_others() {
+    use ddsfile::DxgiFormat::{BC4_UNorm, BC5_UNorm, BC7_UNorm};
+    for (blocks, dxgi) in Blocks::ALL.into_iter().zip([BC4_UNorm, BC5_UNorm, BC7_UNorm]) {
+        for (size, counts) in [((8, 8), vec![4, 1, 1, 1]), ((13, 5), vec![8, 2, 1, 1]), ((1, 9), vec![3, 1, 1, 1])] {
+            let texture = Texture::in_blocks(blocks, size, 4);
+            let lengths: Vec<usize> = counts.iter().map(|count| count * blocks.bytes() as usize).collect();
+            let payload = bytes(lengths.iter().sum());
+            for file in [ktx2::write(&texture, &payload, &[]), ktx2::write_zstd(&texture, &payload, &[])] {
+                let file = file.unwrap();
+                let reader = ::ktx2::Reader::new(&file[..]).unwrap_or_else(|e| panic!("{texture:?}: {e}"));
+                let header = reader.header();
+                assert_eq!(header.format.map(|format| format.value()), Some(blocks.vk_format()));
+                let found: Vec<usize> = reader.levels().map(|level| level.uncompressed_byte_length as usize).collect();
+                assert_eq!(found, lengths, "{texture:?}");
+                let (expected, type_size) = ::ktx2::dfd::Basic::from_format(header.format.unwrap()).unwrap();
+                assert_eq!(reader.basic_dfd().unwrap().to_vec(), expected.to_vec(), "{blocks:?}");
+                assert_eq!(header.type_size, type_size);
+                if header.supercompression_scheme.is_none() {
+                    assert!(reader.levels().flat_map(|level| level.data.to_vec()).eq(payload.iter().copied()));
+                }
+            }
+            let file = dds::write(&texture, &payload).unwrap();
+            let read = ddsfile::Dds::read(&file[..]).unwrap_or_else(|e| panic!("{texture:?}: {e}"));
+            assert_eq!((read.get_dxgi_format(), read.get_num_mipmap_levels()), (Some(dxgi), 4));
+            assert_eq!((read.get_width(), read.get_height()), size);
+            assert_eq!((read.header.pitch, read.header.linear_size), (None, Some(lengths[0] as u32)));
+            assert!(read.get_data(0).unwrap() == payload);
+        }
     }
 }
 

@@ -1,10 +1,14 @@
 //! A texture as a DDS file with the DX10 header (Microsoft's DDS programming guide). Here a layer's face comes with all
 //! its mips before the next, so the images of a pack are put in another order.
 
+use super::blocks::Blocks;
 use super::image::Texture;
 use crate::vk_format::*;
 
-const FLAGS: u32 = 0x1 | 0x2 | 0x4 | 0x1000 | 0x8; // caps, height, width, pixel format, pitch
+const FLAGS: u32 = 0x1 | 0x2 | 0x4 | 0x1000; // caps, height, width, pixel format
+const FLAG_PITCH: u32 = 0x8;
+/// In place of the pitch: bytes of the largest mip in blocks.
+const FLAG_LINEAR_SIZE: u32 = 0x8_0000;
 const FLAG_MIPS: u32 = 0x2_0000;
 const FOUR_CC: u32 = 0x4;
 const CAPS_TEXTURE: u32 = 0x1000;
@@ -14,7 +18,7 @@ const CAPS2_CUBE_ALL_FACES: u32 = 0x200 | 0xfc00;
 const DIMENSION_2D: u32 = 3;
 const MISC_CUBE: u32 = 0x4;
 
-/// `DXGI_FORMAT` with the same bytes; every format of packs has one.
+/// `DXGI_FORMAT` with the same bytes; every format of packs and every one of [`Blocks`] has one.
 pub fn dxgi_format(vk_format: u32) -> Option<u32> {
     Some(match vk_format {
         R32G32B32A32_SFLOAT => 2,
@@ -45,11 +49,11 @@ pub fn dxgi_format(vk_format: u32) -> Option<u32> {
         R8_UINT => 62,
         R8_SNORM => 63,
         E5B9G9R9_UFLOAT_PACK32 => 67,
-        _ => return None,
+        _ => return Blocks::of(vk_format).map(Blocks::dxgi_format),
     })
 }
 
-/// Bytes of a DDS file with this texture. `None` for a format packs do not use.
+/// Bytes of a DDS file with this texture. `None` for a format that neither packs nor [`Blocks`] have.
 pub fn write(texture: &Texture, payload: &[u8]) -> Option<Vec<u8>> {
     let dxgi = dxgi_format(texture.vk_format)?;
     let many_mips = texture.mips > 1;
@@ -57,8 +61,12 @@ pub fn write(texture: &Texture, payload: &[u8]) -> Option<Vec<u8>> {
     let complex = many_mips || cube || texture.layers > 1;
     let mut out = Vec::with_capacity(148 + payload.len());
     let mut words = |values: &[u32]| values.iter().for_each(|value| out.extend(value.to_le_bytes()));
-    words(&[u32::from_le_bytes(*b"DDS "), 124, FLAGS | if many_mips { FLAG_MIPS } else { 0 }]);
-    words(&[texture.height, texture.width, texture.width * texture.texel_bytes() as u32, 0, texture.mips]);
+    let (flag, length) = match Blocks::of(texture.vk_format) {
+        Some(_) => (FLAG_LINEAR_SIZE, texture.image(0, 0, 0).range.len() as u32),
+        None => (FLAG_PITCH, texture.width * texture.texel_bytes() as u32),
+    };
+    words(&[u32::from_le_bytes(*b"DDS "), 124, FLAGS | flag | if many_mips { FLAG_MIPS } else { 0 }]);
+    words(&[texture.height, texture.width, length, 0, texture.mips]);
     words(&[0; 11]);
     words(&[32, FOUR_CC, u32::from_le_bytes(*b"DX10"), 0, 0, 0, 0, 0]);
     let caps = CAPS_TEXTURE | if complex { CAPS_COMPLEX } else { 0 } | if many_mips { CAPS_MIPS } else { 0 };

@@ -3,9 +3,13 @@
 //! Linear colours with BT.709 primaries, as Khronos's own tools write for the same `VkFormat`. Integers that are not
 //! normalised have an upper value of 1, floats reach from −1 (0 without sign) to 1: that says what 1.0 is stored as.
 
+use super::blocks::{self, Blocks};
 use super::texel::{Encoding, Layout};
 
 const MODEL_RGBSDA: u8 = 1;
+const MODEL_BC4: u8 = 131;
+const MODEL_BC5: u8 = 132;
+const MODEL_BC7: u8 = 134;
 const PRIMARIES_BT709: u8 = 1;
 const TRANSFER_LINEAR: u8 = 1;
 const ALPHA: u8 = 15;
@@ -29,7 +33,29 @@ struct Sample {
 
 /// The whole DFD section: its length, then one basic descriptor block.
 pub fn descriptor(layout: &Layout, texel_bytes: u8) -> Vec<u8> {
-    let samples = samples(layout);
+    section(MODEL_RGBSDA, 1, texel_bytes, &samples(layout))
+}
+
+/// The DFD section of a format of blocks: each sample is all bits of a block that say a channel, or all channels.
+pub fn of_blocks(blocks: Blocks) -> Vec<u8> {
+    let (model, bits): (u8, &[(u16, u8)]) = match blocks {
+        Blocks::Bc4 => (MODEL_BC4, &[(0, 64)]),
+        Blocks::Bc5 => (MODEL_BC5, &[(0, 64), (64, 64)]),
+        Blocks::Bc7 => (MODEL_BC7, &[(0, 128)]),
+    };
+    let sample = |(channel, &(bit_offset, bits)): (usize, &(u16, u8))| Sample {
+        bit_offset,
+        bits,
+        channel: channel as u8,
+        lower: 0,
+        upper: u32::MAX,
+    };
+    let samples: Vec<Sample> = bits.iter().enumerate().map(sample).collect();
+    section(model, blocks::EDGE as u8, blocks.bytes() as u8, &samples)
+}
+
+/// A section of one descriptor, for texels or blocks of `edge`² texels.
+fn section(model: u8, edge: u8, texel_bytes: u8, samples: &[Sample]) -> Vec<u8> {
     let block = 24 + 16 * samples.len();
     let mut out = Vec::new();
     out.extend((block as u32 + 4).to_le_bytes());
@@ -37,8 +63,8 @@ pub fn descriptor(layout: &Layout, texel_bytes: u8) -> Vec<u8> {
     out.extend(0u32.to_le_bytes());
     out.extend(2u16.to_le_bytes());
     out.extend((block as u16).to_le_bytes());
-    // No flags: alpha is straight. Texel blocks of one texel.
-    out.extend([MODEL_RGBSDA, PRIMARIES_BT709, TRANSFER_LINEAR, 0, 0, 0, 0, 0]);
+    // No flags: alpha is straight.
+    out.extend([model, PRIMARIES_BT709, TRANSFER_LINEAR, 0, edge - 1, edge - 1, 0, 0]);
     out.extend([texel_bytes, 0, 0, 0, 0, 0, 0, 0]);
     for sample in samples {
         out.extend(sample.bit_offset.to_le_bytes());

@@ -1,5 +1,7 @@
-//! Where the images of a texture lie in its payload: by mip, then layer, then face (docs/FORMAT.md).
+//! Where the images of a texture lie in its payload: by mip, then layer, then face (docs/FORMAT.md). Blocks of compressed textures lie
+//! there as texels do.
 
+use super::blocks::{self, Blocks};
 use crate::container::Resource;
 use crate::vk_format;
 use std::ops::Range;
@@ -20,6 +22,8 @@ pub struct Texture {
     /// Mip levels.
     pub mips: u32,
     texel_bytes: u32,
+    /// Texels along an edge of what `texel_bytes` hold: more than one in blocks.
+    edge: u32,
 }
 
 /// One image: a mip of a face of a layer.
@@ -35,7 +39,7 @@ pub struct Image {
     pub width: u32,
     /// Height in texels.
     pub height: u32,
-    /// Its bytes in the payload, rows tightly packed.
+    /// Its bytes in the payload, rows of texels or blocks tightly packed.
     pub range: Range<usize>,
 }
 
@@ -46,13 +50,19 @@ impl Texture {
         match *resource {
             Resource::Texture { vk_format, width, height, layers, faces, mips } => {
                 let texel_bytes = vk_format::texel_bytes(vk_format)?;
-                Some(Texture { vk_format, width, height, layers, faces, mips, texel_bytes })
+                Some(Texture { vk_format, width, height, layers, faces, mips, texel_bytes, edge: 1 })
             }
             Resource::Buffer { .. } | Resource::Parameters => None,
         }
     }
 
-    /// Bytes of a texel.
+    /// A texture of one layer in blocks.
+    pub fn in_blocks(blocks: Blocks, (width, height): (u32, u32), mips: u32) -> Texture {
+        let (vk_format, texel_bytes) = (blocks.vk_format(), blocks.bytes());
+        Texture { vk_format, width, height, layers: 1, faces: 1, mips, texel_bytes, edge: blocks::EDGE }
+    }
+
+    /// Bytes of a texel, or of a block.
     pub fn texel_bytes(&self) -> usize {
         self.texel_bytes as usize
     }
@@ -64,8 +74,12 @@ impl Texture {
 
     /// Bytes of all layers and faces of a mip.
     pub fn mip_bytes(&self, mip: u32) -> usize {
+        self.image_bytes(mip) * self.layers as usize * self.faces as usize
+    }
+
+    fn image_bytes(&self, mip: u32) -> usize {
         let (width, height) = self.size(mip);
-        width as usize * height as usize * self.texel_bytes() * self.layers as usize * self.faces as usize
+        width.div_ceil(self.edge) as usize * height.div_ceil(self.edge) as usize * self.texel_bytes()
     }
 
     /// Where a mip lies in the payload.
@@ -77,7 +91,7 @@ impl Texture {
     /// One image.
     pub fn image(&self, mip: u32, layer: u32, face: u32) -> Image {
         let (width, height) = self.size(mip);
-        let bytes = width as usize * height as usize * self.texel_bytes();
+        let bytes = self.image_bytes(mip);
         let start = self.mip_range(mip).start + (layer * self.faces + face) as usize * bytes;
         Image { mip, layer, face, width, height, range: start..start + bytes }
     }

@@ -3,6 +3,7 @@
 //!
 //! A pack and a KTX2 file order the images of a mip alike; the file has the smallest mip first and aligns each.
 
+use super::blocks::Blocks;
 use super::image::Texture;
 use super::{dfd, texel};
 
@@ -16,7 +17,8 @@ const ZSTD_LEVEL: i32 = 9;
 const SCHEME_ZSTD: usize = 2;
 
 /// Bytes of a KTX2 file with this texture, not supercompressed. `metadata` are keys with text values; those that begin with `KTX` are
-/// Khronos's. A texture of one layer is no array, one of six faces is a cube. `None` for a format packs do not use.
+/// Khronos's. A texture of one layer is no array, one of six faces is a cube. `None` for a format that neither packs
+/// nor [`Blocks`] have.
 pub fn write(texture: &Texture, payload: &[u8], metadata: &[(&str, &str)]) -> Option<Vec<u8>> {
     let levels: Vec<&[u8]> = (0..texture.mips).map(|mip| &payload[texture.mip_range(mip)]).collect();
     file(texture, &levels, 0, metadata)
@@ -32,15 +34,20 @@ pub fn write_zstd(texture: &Texture, payload: &[u8], metadata: &[(&str, &str)]) 
 
 /// A file of these levels, the largest first.
 fn file(texture: &Texture, levels: &[&[u8]], scheme: usize, metadata: &[(&str, &str)]) -> Option<Vec<u8>> {
-    let layout = texel::layout(texture.vk_format)?;
-    let dfd = dfd::descriptor(&layout, texture.texel_bytes() as u8);
+    let (dfd, type_size) = match Blocks::of(texture.vk_format) {
+        Some(blocks) => (dfd::of_blocks(blocks), 1),
+        None => {
+            let layout = texel::layout(texture.vk_format)?;
+            let whole_bytes = layout.bits % 8 == 0;
+            let type_size = if whole_bytes { (layout.bits / 8).max(1) as usize } else { texture.texel_bytes() };
+            (dfd::descriptor(&layout, texture.texel_bytes() as u8), type_size)
+        }
+    };
     let kvd = key_values(metadata);
-    let type_size = (layout.bits / 8).max(1) as usize;
-    let type_size = if layout.bits % 8 == 0 { type_size } else { texture.texel_bytes() };
     let dfd_at = HEADER_BYTES + LEVEL_ENTRY_BYTES * texture.mips as usize;
     let kvd_at = dfd_at + dfd.len();
 
-    // Where each mip lies: the last first, each at a multiple of its texel and of 4; compressed ones at any byte.
+    // Where each mip lies: the last first, each at a multiple of its texel or block, and of 4; compressed ones at any byte.
     let alignment = if scheme == 0 { texture.texel_bytes().max(4) } else { 1 };
     let mut end = kvd_at + kvd.len();
     let mut places = vec![0; texture.mips as usize];
