@@ -1,5 +1,6 @@
 //! What the programs share: flags, files, progress, reports, projects, the preview.
 
+mod blocks;
 pub mod canvas;
 pub mod cli;
 pub mod commands;

@@ -159,6 +159,38 @@ fn ktx2_dds_and_exr_are_read_by_others() {
 }
 
 #[test]
+fn blocks_are_those_of_gpus_in_ktx2_and_dds() {
+    let folder = folder();
+    let formats = |name: &str| {
+        let file = fs::read(folder.path().join("out").join(name)).unwrap();
+        let reader = ktx2::Reader::new(&file).unwrap();
+        let lengths: Vec<u64> = reader.levels().map(|level| level.uncompressed_byte_length).collect();
+        (reader.header().format.unwrap(), lengths)
+    };
+    textures(folder.path(), &["--blocks", "--occlusion", "grey.png"]).ok();
+    assert_eq!(formats("n_normal.ktx2"), (ktx2::Format::BC5_UNORM_BLOCK, vec![96, 32, 16, 16]));
+    assert_eq!(formats("n_orm.ktx2"), (ktx2::Format::BC7_UNORM_BLOCK, vec![96, 32, 16, 16]));
+    let plain = mips(folder.path(), "n_normal.ktx2");
+    textures(folder.path(), &["--blocks", "--zstd", "--target", "generic", "--name", "z"]).ok();
+    assert_eq!(formats("z_roughness.ktx2"), (ktx2::Format::BC4_UNORM_BLOCK, vec![48, 16, 8, 8]));
+    let file = fs::read(folder.path().join("out/z_normal.ktx2")).unwrap();
+    let reader = ktx2::Reader::new(&file).unwrap();
+    assert_eq!(reader.header().supercompression_scheme, Some(ktx2::SupercompressionScheme::Zstandard));
+    for (level, plain) in reader.levels().zip(&plain) {
+        assert!(zstd::bulk::decompress(level.data, plain.len()).unwrap() == *plain);
+    }
+    textures(folder.path(), &["--blocks", "--format", "dds", "-j", "7"]).ok();
+    let dds = ddsfile::Dds::read(&*fs::read(folder.path().join("out/n_normal.dds")).unwrap()).unwrap();
+    assert_eq!(dds.get_dxgi_format(), Some(ddsfile::DxgiFormat::BC5_UNorm));
+    assert!(dds.get_data(0).unwrap() == plain.concat());
+    // BC5 by its definition: the first texel of the first block is 176, 164, and both ends of what varies are stored.
+    let ends = |block: &[u8]| [block[0].min(block[1]), block[0].max(block[1])];
+    let near = |found: [u8; 2], expected: [u8; 2]| found.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 2);
+    let (red, green) = (ends(&plain[0][..8]), ends(&plain[0][8..16]));
+    assert!(near(red, [128, 176]) && near(green, [164, 166]), "{red:?} {green:?}");
+}
+
+#[test]
 fn the_list_is_as_its_schema_says_and_names_every_file() {
     let folder = folder();
     let flags = ["--json", "--depfile", "d", "--occlusion", "grey.png", "--assume-linear", "--channels", "xyz"];
@@ -228,6 +260,8 @@ fn a_dry_run_and_refusals_write_nothing() {
         ),
         (&["--zstd", "--format", "png"], 2, "--zstd"),
         (&["--bits", "16", "--format", "exr"], 2, "--bits"),
+        (&["--blocks", "--format", "png"], 2, "--blocks"),
+        (&["--blocks", "--bits", "16"], 2, "--blocks: holds 8 bits"),
         (&["--bits", "12"], 2, "expected 8 or 16, found 12"),
         (&["--name", "a/b"], 2, "--name"),
         (&["--target", "blender"], 2, "blender"),

@@ -30,7 +30,7 @@ impl Efforts {
     /// Points along an edge and half vectors by level: fine levels have many texels and few normals under each.
     fn of(level: usize) -> Efforts {
         const USUAL: [(usize, usize); 8] =
-            [(4, 64), (5, 128), (8, 192), (12, 192), (16, 256), (24, 256), (28, 384), (40, 512)];
+            [(4, 96), (5, 128), (8, 192), (12, 192), (16, 256), (24, 256), (28, 384), (40, 512)];
         const SPREAD: [(usize, usize); 8] =
             [(5, 128), (7, 192), (10, 256), (14, 288), (18, 384), (24, 512), (32, 512), (40, 640)];
         let of = |counts: [(usize, usize); 8]| {

@@ -71,6 +71,9 @@ pub struct Args {
     /// Compress the levels of KTX2 files with Zstandard
     #[arg(long, help_heading = "Output")]
     pub zstd: bool,
+    /// Compress KTX2 and DDS files in blocks that GPUs read: BC5 for normals, x and y only, BC7 for the others, BC4 for one channel
+    #[arg(long, help_heading = "Output")]
+    pub blocks: bool,
     /// Write x and y of normals only, in red and green
     #[arg(long, help_heading = "Output")]
     pub two_channel: bool,
@@ -156,7 +159,13 @@ impl Args {
         if self.bits == 16 && self.format == Format::Exr {
             return Err(Failure::usage("--bits: EXR files have half floats; leave it out"));
         }
-        Ok(Layout { format: self.format, bits: self.bits, zstd: self.zstd })
+        if self.blocks && !matches!(self.format, Format::Ktx2 | Format::Dds) {
+            return Err(Failure::usage("--blocks: is for --format ktx2 and dds; leave it out"));
+        }
+        if self.blocks && self.bits == 16 {
+            return Err(Failure::usage("--blocks: holds 8 bits a channel; leave out --bits 16"));
+        }
+        Ok(Layout { format: self.format, bits: self.bits, zstd: self.zstd, blocks: self.blocks })
     }
 
     /// Whether green points down in the files.

@@ -1,9 +1,11 @@
 //! Levels of a texture as bytes, and bytes as files: KTX2, DDS and EXR with all levels, PNG one a level.
 
+use crate::blocks;
 use crate::commands::export::exr;
 use crate::exit::{Exit, Failure};
 use clap::ValueEnum;
 use glint_bake_core::textures::levels::sizes;
+use glint_formats::export::blocks::Blocks;
 use glint_formats::export::{Texture, dds, ktx2};
 use glint_formats::{Resource, vk_format};
 use half::f16;
@@ -32,6 +34,8 @@ pub struct Layout {
     pub bits: u32,
     /// Whether the levels of KTX2 are compressed with Zstandard.
     pub zstd: bool,
+    /// Whether KTX2 and DDS are compressed in blocks.
+    pub blocks: bool,
 }
 
 /// A texture whose levels are known.
@@ -79,6 +83,11 @@ impl Layout {
         let mut payload = Vec::with_capacity(texture.mip_range(texture.mips - 1).end);
         for level in 0..texture.mips {
             let (width, height) = texture.size(level);
+            if let Some(blocks) = self.blocks_of(channels) {
+                let texel = |k| value(level as usize, k).map(in_8_bits);
+                payload.extend(blocks::compress(blocks, (width, height), texel));
+                continue;
+            }
             payload.extend(self.texels(channels, (level as usize, width as usize * height as usize), value));
         }
         let unsupported = || Failure::new(Exit::Unexpected, "a format without a writer; please report this");
@@ -98,8 +107,20 @@ impl Layout {
         texture.mip_range(texture.mips - 1).end as u64
     }
 
+    /// The format of blocks for this many channels.
+    fn blocks_of(&self, channels: usize) -> Option<Blocks> {
+        self.blocks.then_some(match channels {
+            1 => Blocks::Bc4,
+            2 => Blocks::Bc5,
+            _ => Blocks::Bc7,
+        })
+    }
+
     fn texture(&self, plan: &Plan) -> Texture {
         let (width, height) = plan.size;
+        if let Some(blocks) = self.blocks_of(stored_channels(plan.channels)) {
+            return Texture::in_blocks(blocks, plan.size, sizes(width, height).len() as u32);
+        }
         let vk_format = match (self.format, self.bits, stored_channels(plan.channels)) {
             (Format::Exr, _, 1) => vk_format::R16_SFLOAT,
             (Format::Exr, _, 2) => vk_format::R16G16_SFLOAT,
@@ -132,7 +153,7 @@ impl Layout {
                 for (value, bytes) in values.iter().zip(texel.chunks_exact_mut(channel_bytes)) {
                     match (self.format, channel_bytes) {
                         (Format::Exr, _) => bytes.copy_from_slice(&f16::from_f32(*value).to_le_bytes()),
-                        (_, 1) => bytes[0] = (value.clamp(0.0, 1.0) * 255.0).round() as u8,
+                        (_, 1) => bytes[0] = in_8_bits(*value),
                         (_, _) => {
                             bytes.copy_from_slice(&((value.clamp(0.0, 1.0) * 65535.0).round() as u16).to_le_bytes())
                         }
@@ -174,6 +195,10 @@ impl Layout {
             .expect("a vector takes every byte of a picture of the right size");
         out
     }
+}
+
+fn in_8_bits(value: f32) -> u8 {
+    (value.clamp(0.0, 1.0) * 255.0).round() as u8
 }
 
 /// Channels as they are stored: GPUs have no textures of three.

@@ -106,6 +106,7 @@ fn options(args: &Args) -> OptionList {
     options.push_choice("format", &args.format);
     options.push("bits", args.bits);
     options.push("zstd", args.zstd);
+    options.push("blocks", args.blocks);
     options.push("two-channel", args.two_channel);
     options.extend(args.input.option_list());
     options

@@ -50,12 +50,10 @@ fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     options.check(&loaded.map).map_err(|e| Failure::bake(&args.map, &e))?;
     material.roughness.validate(&loaded.map).map_err(Failure::from)?;
 
-    let normal_plan = Plan {
-        name: format!("{stem}_normal"),
-        channels: if args.two_channel { 2 } else { 4 },
-        opaque: !args.two_channel,
-        size,
-    };
+    // BC5 has two channels.
+    let two_channel = args.two_channel || args.blocks;
+    let normal_plan =
+        Plan { name: format!("{stem}_normal"), channels: if two_channel { 2 } else { 4 }, opaque: !two_channel, size };
     let companions: Vec<(Plan, &[Channel])> = args
         .companions()
         .into_iter()
