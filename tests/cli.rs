@@ -30,6 +30,8 @@ mod examples;
 mod export;
 #[path = "real_maps/folder.rs"]
 mod folder;
+#[path = "cli/foreign.rs"]
+mod foreign;
 #[path = "cli/generate.rs"]
 mod generate;
 #[path = "cli/info.rs"]
@@ -77,6 +79,8 @@ mod support;
 mod surface;
 #[path = "cli/textures.rs"]
 mod textures;
+#[path = "cli/textures_readers.rs"]
+mod textures_readers;
 #[cfg(feature = "view")]
 #[path = "cli/view.rs"]
 mod view;

@@ -1,5 +1,6 @@
 //! docs/examples/bind_pack.py: a host that knows docs/FORMAT.md alone binds a pack on a GPU and gets the CPU's answers.
 
+use crate::foreign::python_with;
 use crate::support::{bake, root};
 use glam::{Vec2, Vec3};
 use glint_bake_core::dictionary::eval::{DictionaryMaterial, PixelOnSurface, patch_sdf};
@@ -12,18 +13,6 @@ use std::process::Command;
 
 /// Queries that are asked.
 const QUERIES: usize = 2000;
-
-/// Python with the package wgpu; `None`, which is said, without.
-fn python() -> Option<String> {
-    let program = std::env::var("GLINT_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let has_wgpu = Command::new(&program).args(["-c", "import wgpu"]).output().is_ok_and(|out| out.status.success());
-    if has_wgpu {
-        return Some(program);
-    }
-    assert!(std::env::var_os("GLINT_PYTHON").is_none(), "{program} cannot import wgpu");
-    eprintln!("skipped: {program} has no package wgpu; GLINT_PYTHON names one that has");
-    None
-}
 
 /// A query as `DictionaryQuery` lies in memory.
 fn bytes_of(material: &DictionaryMaterial, pixel: PixelOnSurface, slope: Vec2) -> Vec<u8> {
@@ -58,7 +47,7 @@ fn bytes_of(material: &DictionaryMaterial, pixel: PixelOnSurface, slope: Vec2) -
 
 #[test]
 fn a_host_of_the_documentation_alone_gets_the_answers_of_the_cpu() {
-    let Some(python) = python() else { return };
+    let Some(python) = python_with("wgpu") else { return };
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     bake(folder.path(), &["dictionary", "-o", "dictionary.glintpack", "-q"]).ok();
