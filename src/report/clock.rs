@@ -25,7 +25,12 @@ pub fn thread_nanoseconds() -> f64 {
 
 /// Most memory of this process up to now, in MiB.
 pub fn peak_mib() -> f64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    peak_mib_of("self")
+}
+
+/// Most memory that a process has held up to now, in MiB; not a number once it has ended.
+pub fn peak_mib_of(process: &str) -> f64 {
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
     let line = status.lines().find(|line| line.starts_with("VmHWM"));
     line.and_then(|line| line.split_whitespace().nth(1)?.parse::<f64>().ok()).map_or(f64::NAN, |kib| kib / 1024.0)
 }

@@ -1,58 +1,34 @@
 //! From a normal map and the roughness of its material to the levels below it.
 //!
-//! A level's normal is the mean over the box of its texel, renormalised, as engines make it: diffuse light asks for that, and it does
-//! not jump as a mode would. Its roughness is fitted ([`super::fit`]) to facets of the bilinear surface in the same box.
+//! A texel's normal is the mean over its box, renormalised, as engines make it, unless another is worth it; normal and roughness are
+//! fitted ([`super::fit`]) to facets of the bilinear surface in the same box.
 
 use super::baked::{Level, Textures};
-use super::fit::{self, Lobe, Offsets, Scratch};
+use super::fit::{self, Facet, Lobe, Offsets, Scratch};
 use super::levels::{shares, sizes};
 use super::options::{LEAST_ALPHA, Roughness, TexturesOptions};
+use super::surface::{Layout, Surface};
 use crate::error::BakeError;
 use crate::normal_map::NormalMap;
 use crate::progress::Progress;
-use glint_formats::Wrap;
 use rayon::prelude::*;
 
 /// How finely a texel is fitted.
 struct Effort {
-    /// Points of the surface under a texel, in texels of the level from its upper left corner.
-    points: Vec<[f32; 2]>,
+    layout: Layout,
     offsets: Offsets,
 }
 
-/// Efforts of a level: for most texels, and for those whose facets spread far for the width of their lobes.
-struct Efforts {
-    usual: Effort,
-    spread: Effort,
-}
-
-impl Efforts {
-    /// Points along an edge and half vectors by level: fine levels have many texels and few normals under each.
-    fn of(level: usize) -> Efforts {
-        const USUAL: [(usize, usize); 8] =
-            [(4, 96), (5, 128), (8, 192), (12, 192), (16, 256), (24, 256), (28, 384), (40, 512)];
-        const SPREAD: [(usize, usize); 8] =
-            [(5, 128), (7, 192), (10, 256), (14, 288), (18, 384), (24, 512), (32, 512), (40, 640)];
-        let of = |counts: [(usize, usize); 8]| {
-            let (edge, half_vectors) = counts[(level - 1).min(counts.len() - 1)];
-            Effort { points: points(edge, level > 3), offsets: Offsets::new(half_vectors) }
-        };
-        Efforts { usual: of(USUAL), spread: of(SPREAD) }
+impl Effort {
+    /// Fine levels have many texels, and few normals under each.
+    fn of(map: &NormalMap, size: (u32, u32), level: usize) -> Effort {
+        // Points along an edge, none where there are cells, and half vectors.
+        const BY_LEVEL: [(usize, usize); 8] =
+            [(0, 48), (0, 96), (0, 128), (12, 192), (18, 256), (24, 448), (32, 640), (40, 768)];
+        let (edge, half_vectors) = BY_LEVEL[(level - 1).min(BY_LEVEL.len() - 1)];
+        let layout = if edge == 0 { Layout::cells(map, size) } else { Layout::points(edge) };
+        Effort { layout, offsets: Offsets::new(half_vectors) }
     }
-}
-
-/// One point in each of `edge`² cells. Bilinear normals vary least at the centres of texels, so that points shall lie everywhere between
-/// those alike: in an even grid where cells are smaller than texels or much the same, else moved about by a Kronecker sequence.
-fn points(edge: usize, moved: bool) -> Vec<[f32; 2]> {
-    let at = |i: usize, within: f64| ((i as f64 + within) / edge as f64) as f32;
-    let point = |k: usize| {
-        let (i, j, t) = (k % edge, k / edge, k as f64 + 0.5);
-        if moved {
-            return [at(i, (t * 0.754_877_666_246_692_7).fract()), at(j, (t * 0.569_840_290_998_053_2).fract())];
-        }
-        [at(i, [0.25, 0.75][(i / 2 + j) % 2]), at(j, [0.25, 0.75][(i + j / 2) % 2])]
-    };
-    (0..edge * edge).map(point).collect()
 }
 
 /// Bakes all levels below the map.
@@ -76,7 +52,7 @@ pub fn bake(
             Some(finer) if (finer.width, finer.height) == (2 * size.0, 2 * size.1) => finer.halved(),
             _ => Means::of(map, size),
         };
-        levels.push(fitted(map, roughness, &next, &Efforts::of(level), progress));
+        levels.push(fitted(map, roughness, &next, &Effort::of(map, size, level), progress));
         means = Some(next);
     }
     progress.end();
@@ -137,26 +113,15 @@ fn lifted(x: f32, y: f32) -> f32 {
 }
 
 /// A level whose means are known.
-fn fitted(map: &NormalMap, roughness: &Roughness, means: &Means, efforts: &Efforts, progress: &dyn Progress) -> Level {
+fn fitted(map: &NormalMap, roughness: &Roughness, means: &Means, effort: &Effort, progress: &dyn Progress) -> Level {
     let width = means.width as usize;
-    let ratio = [map.width as f32 / means.width as f32, map.height as f32 / means.height as f32];
+    let size = (means.width, means.height);
     let surface = Surface { map, roughness };
     let row = |(j, line): (usize, &[[f32; 3]])| {
-        let (mut facets, mut scratch) = (Vec::new(), Scratch::default());
+        let mut fitter = Fitter { surface, effort, size, facets: Vec::new(), scratch: Scratch::default() };
         let mut texels = Vec::with_capacity(width);
         for (i, mean) in line.iter().enumerate() {
-            let mean = unit(*mean);
-            let corner = [i as f32 * ratio[0], j as f32 * ratio[1]];
-            surface.facets(corner, ratio, &efforts.usual.points, &mut facets);
-            let mut spread = Spread::of(&facets, mean);
-            let mut offsets = &efforts.usual.offsets;
-            if spread.is_wide() {
-                surface.facets(corner, ratio, &efforts.spread.points, &mut facets);
-                spread = Spread::of(&facets, mean);
-                offsets = &efforts.spread.offsets;
-            }
-            let lobe = spread.lobe(&facets, mean, offsets, &mut scratch);
-            texels.push(([lobe.normal[0], lobe.normal[1]], lobe.a2.sqrt().clamp(LEAST_ALPHA, 1.0)));
+            texels.push(fitter.texel((i, j), *mean));
         }
         progress.advance(1);
         texels
@@ -166,14 +131,32 @@ fn fitted(map: &NormalMap, roughness: &Roughness, means: &Means, efforts: &Effor
     Level { width: means.width, height: means.height, normals, alphas }
 }
 
+/// Fits the texels of a row.
+struct Fitter<'a> {
+    surface: Surface<'a>,
+    effort: &'a Effort,
+    size: (u32, u32),
+    facets: Vec<Facet>,
+    scratch: Scratch,
+}
+
+impl Fitter<'_> {
+    /// Normal and α of a texel whose mean normal is known.
+    fn texel(&mut self, at: (usize, usize), sum: [f32; 3]) -> ([f32; 2], f32) {
+        let mean = unit(sum);
+        self.surface.facets(&self.effort.layout, self.size, at, sum, &mut self.facets);
+        let spread = Spread::of(&self.facets, mean);
+        let lobe = spread.lobe(&self.facets, mean, &self.effort.offsets, &mut self.scratch);
+        ([lobe.normal[0], lobe.normal[1]], lobe.a2.sqrt().clamp(LEAST_ALPHA, 1.0))
+    }
+}
+
 /// A mean normal at length 1; flat where normals cancel out.
 fn unit([x, y, z]: [f32; 3]) -> [f32; 3] {
     let length = (x * x + y * y + z * z).sqrt();
     if length > 1e-6 { [x / length, y / length, z / length] } else { [0.0, 0.0, 1.0] }
 }
 
-/// The normal is free where the variance of normals is beyond this part of the least α².
-const FREE_FROM: f32 = 0.1;
 /// Below this part of α², the variance of normals is in the limit of small variances.
 const SMALL_VARIANCE: f32 = 0.01;
 
@@ -188,16 +171,15 @@ struct Spread {
 }
 
 impl Spread {
-    fn of(facets: &[Lobe], mean: [f32; 3]) -> Spread {
+    fn of(facets: &[Facet], mean: [f32; 3]) -> Spread {
         let mut spread = Spread { variance: 0.0, a2: 0.0, range: [f32::MAX, 0.0] };
-        for facet in facets {
-            let [dx, dy, dz] = [0, 1, 2].map(|c| facet.normal[c] - mean[c]);
-            spread.variance += dx * dx + dy * dy + dz * dz;
-            spread.a2 += facet.a2;
-            spread.range = [spread.range[0].min(facet.a2), spread.range[1].max(facet.a2)];
+        for Facet { lobe, weight } in facets {
+            let [dx, dy, dz] = [0, 1, 2].map(|c| lobe.normal[c] - mean[c]);
+            spread.variance += weight * (dx * dx + dy * dy + dz * dz);
+            spread.a2 += weight * lobe.a2;
+            spread.range = [spread.range[0].min(lobe.a2), spread.range[1].max(lobe.a2)];
         }
-        let share = 1.0 / facets.len() as f32;
-        Spread { variance: spread.variance * share, a2: spread.a2 * share, ..spread }
+        spread
     }
 
     /// What variance adds to α² in the limit of small variances; `docs/methods/textures.md` says why.
@@ -205,71 +187,14 @@ impl Spread {
         self.variance * (1.0 - self.a2) * (1.0 - self.a2)
     }
 
-    /// Whether the facets spread far for the width of their lobes.
-    fn is_wide(&self) -> bool {
-        self.variance > FREE_FROM * self.range[0]
-    }
-
     /// The lobe that is nearest to the facets.
-    fn lobe(&self, facets: &[Lobe], mean: [f32; 3], offsets: &Offsets, scratch: &mut Scratch) -> Lobe {
+    fn lobe(&self, facets: &[Facet], mean: [f32; 3], offsets: &Offsets, scratch: &mut Scratch) -> Lobe {
         let [least, most] = self.range;
         let a2 = self.a2 + self.broadening();
         if self.variance < SMALL_VARIANCE * self.a2 && most <= (1.0 + SMALL_VARIANCE) * least {
             return Lobe { normal: mean, a2: a2.min(1.0) };
         }
         let begin = Lobe { normal: mean, a2: a2.max(1.001 * least).min(1.0) };
-        fit::nearest(facets, begin, least, self.is_wide(), offsets, scratch)
-    }
-}
-
-/// The bilinear surface.
-struct Surface<'a> {
-    map: &'a NormalMap,
-    roughness: &'a Roughness,
-}
-
-impl Surface<'_> {
-    /// Facets at points of the box of `size` texels from `corner` on.
-    fn facets(&self, corner: [f32; 2], size: [f32; 2], points: &[[f32; 2]], facets: &mut Vec<Lobe>) {
-        facets.clear();
-        for point in points {
-            facets.push(self.facet(corner[0] + size[0] * point[0], corner[1] + size[1] * point[1]));
-        }
-    }
-
-    fn facet(&self, u: f32, v: f32) -> Lobe {
-        let (p, q) = (u - 0.5, v - 0.5);
-        let (i, j) = (p.floor(), q.floor());
-        let (fx, fy) = (p - i, q - j);
-        let columns = self.neighbours(i as i32, self.map.width);
-        let rows = self.neighbours(j as i32, self.map.height).map(|row| row * self.map.width as usize);
-        let at = [rows[0] + columns[0], rows[0] + columns[1], rows[1] + columns[0], rows[1] + columns[1]];
-        let mix = |a: f32, b: f32, c: f32, d: f32| {
-            let (top, bottom) = (a + (b - a) * fx, c + (d - c) * fx);
-            top + (bottom - top) * fy
-        };
-        let [a, b, c, d] = at.map(|at| self.map.projected[at]);
-        let (x, y) = (mix(a[0], b[0], c[0], d[0]), mix(a[1], b[1], c[1], d[1]));
-        let perceptual = match self.roughness {
-            Roughness::Constant(value) => *value,
-            Roughness::Map(values) => {
-                let [a, b, c, d] = at.map(|at| values[at]);
-                mix(a, b, c, d)
-            }
-        };
-        let alpha = (perceptual * perceptual).clamp(LEAST_ALPHA, 1.0);
-        Lobe { normal: [x, y, lifted(x, y)], a2: alpha * alpha }
-    }
-
-    /// A texel and the next along an axis.
-    fn neighbours(&self, i: i32, size: u32) -> [usize; 2] {
-        let size = size as i32;
-        let wrapped = |i: i32| match self.map.wrap {
-            Wrap::Repeat if i < 0 => i + size,
-            Wrap::Repeat if i >= size => i - size,
-            Wrap::Repeat => i,
-            Wrap::Clamp => i.clamp(0, size - 1),
-        };
-        [wrapped(i) as usize, wrapped(i + 1) as usize]
+        fit::nearest(facets, begin, least, offsets, scratch)
     }
 }

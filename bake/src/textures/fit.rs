@@ -1,19 +1,18 @@
 //! The lobe of least L1 error: one normal and one GGX α in place of many facets, over views and lights.
 //!
-//! Half vectors are drawn where the facets reflect, a quarter of them from a wide lobe, each seen from one of several views; with
-//! dω_l = 4 (v·h) dω_h the sum of weighted differences of radiance is ∫|L̂ − L| dω_l. The same offsets serve every texel, by a
-//! Kronecker sequence, so that the fit has no noise from one texel to the next.
+//! Half vectors are drawn from one wide lobe, each seen from one of several views; with dω_l = 4 (v·h) dω_h the sum of weighted
+//! differences of radiance is ∫|L̂ − L| dω_l. The same offsets serve every texel, by a Kronecker sequence, so that the fit has no
+//! noise from one texel to the next.
 //!
 //! α² is the least α² of the facets and a broadening on top of it. It is found by steps downhill from the broadening that variance
-//! asks for, and a parabola through the last three. Where facets spread far for the width of their lobes, the normal is free: the
-//! mode may be nearer than the mean. It leaves the mean only where that is worth [`WORTH`], so that smooth maps keep their mean
-//! normals.
+//! asks for, and a parabola through the last three. The normal is free: the mode may be nearer than the mean. It leaves the mean only
+//! where that is worth [`WORTH`], so that smooth maps keep their mean normals.
 //!
 //! Additions, multiplications, divisions and square roots only, in a fixed order: the same bits on every machine.
 
 use multiversion::multiversion;
 
-const LANES: usize = 8;
+const LANES: usize = 16;
 type Lanes = [f32; LANES];
 /// A vector of [`LANES`] half vectors, views or lights.
 type Vectors = [Lanes; 3];
@@ -21,7 +20,9 @@ type Vectors = [Lanes; 3];
 /// Polar angles of the views that a highlight is fitted for, in radians.
 const VIEW_ANGLES: [f64; 4] = [0.0, 0.5, 0.9, 1.2];
 /// Part of the error that a normal other than the mean has to save.
-const WORTH: f32 = 0.02;
+const WORTH: f32 = 0.01;
+/// Error of the mode at a first look, as a part of that of the mean, from which on it is looked at no further.
+const HOPELESS: f32 = 1.1;
 /// Least z of a free normal.
 const LEAST_Z: f32 = 0.05;
 
@@ -34,6 +35,14 @@ pub(super) struct Lobe {
     pub a2: f32,
 }
 
+/// A facet of the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Facet {
+    pub lobe: Lobe,
+    /// Its part of the surface; those of all facets add up to 1.
+    pub weight: f32,
+}
+
 /// Where half vectors lie in a GGX lobe of α = 1 around +Z, and the view that each is seen from.
 #[derive(Clone, Debug)]
 pub(super) struct Offsets(Vec<Offset>);
@@ -41,6 +50,8 @@ pub(super) struct Offsets(Vec<Offset>);
 #[derive(Clone, Copy, Debug, Default)]
 struct Offset {
     slope: [Lanes; 2],
+    /// (1 + r²)², r the length of the slope.
+    rarity: Lanes,
     view: Vectors,
 }
 
@@ -54,11 +65,12 @@ impl Offsets {
             // The share of GGX within the tangent r is r²/(r² + α²).
             let r = (u / (1.0 - u)).sqrt();
             let (sin, cos) = libm::sincos(angle * std::f64::consts::TAU);
-            let polar = VIEW_ANGLES[((t * 0.618_033_988_749_894_8).fract() * VIEW_ANGLES.len() as f64) as usize];
-            let (view_sin, view_cos) = libm::sincos(t * 2.399_963_229_728_653);
+            let polar = VIEW_ANGLES[k % VIEW_ANGLES.len()];
+            let (view_sin, view_cos) = libm::sincos(angle * std::f64::consts::TAU + t * 2.399_963_229_728_653);
             let view = [libm::sin(polar) * view_cos, libm::sin(polar) * view_sin, libm::cos(polar)];
             let (block, lane) = (&mut blocks[k / LANES], k % LANES);
             (block.slope[0][lane], block.slope[1][lane]) = ((r * cos) as f32, (r * sin) as f32);
+            block.rarity[lane] = ((1.0 + r * r) * (1.0 + r * r)) as f32;
             for c in 0..3 {
                 block.view[c][lane] = view[c] as f32;
             }
@@ -72,11 +84,10 @@ impl Offsets {
 struct Samples {
     half: Vectors,
     view: Vectors,
-    light: Vectors,
-    /// 4 (v·h), which makes half vectors lights, up to a factor; later over the density of half vectors.
+    /// 2 (v·h): light is that times half less view.
+    twice: Lanes,
+    /// 4 (v·h), which makes half vectors lights, over the density of half vectors, up to a factor.
     weight: Lanes,
-    /// π D (h·n), the mean of all facets.
-    density: Lanes,
     /// 2π times radiance.
     exact: Lanes,
 }
@@ -84,10 +95,20 @@ struct Samples {
 /// Samples against a normal.
 #[derive(Clone, Copy, Debug, Default)]
 struct Seen {
-    sin2: Lanes,
     cos2: Lanes,
     view: Lanes,
     light: Lanes,
+}
+
+impl Samples {
+    /// (n·h)², n·l where it is lit, n·v.
+    #[inline(always)]
+    fn against(&self, [x, y, z]: [f32; 3], k: usize) -> (f32, f32, f32) {
+        let c = x * self.half[0][k] + y * self.half[1][k] + z * self.half[2][k];
+        let cv = x * self.view[0][k] + y * self.view[1][k] + z * self.view[2][k];
+        let cl = (self.twice[k] * c - cv).max(0.0);
+        (c * c, if cv > 0.0 { cl } else { 0.0 }, cv.max(1e-3))
+    }
 }
 
 /// Memory that fits share, so that a texel allocates none.
@@ -95,38 +116,30 @@ struct Seen {
 pub(super) struct Scratch {
     samples: Vec<Samples>,
     seen: Vec<Seen>,
+    terms: Vec<Terms>,
 }
 
 /// The lobe nearest to the facets. `begin` has their mean normal and an α² to begin at; none of them has a lesser α² than
-/// `least`. `is_free`: the normal too is looked for.
-pub(super) fn nearest(
-    facets: &[Lobe],
-    begin: Lobe,
-    least: f32,
-    is_free: bool,
-    offsets: &Offsets,
-    scratch: &mut Scratch,
-) -> Lobe {
-    let wide = Lobe { a2: (2.0 * begin.a2).min(1.0), ..begin };
-    place(facets, wide, offsets, &mut scratch.samples);
-    shine(facets, wide, &mut scratch.samples);
+/// `least`.
+pub(super) fn nearest(facets: &[Facet], begin: Lobe, least: f32, offsets: &Offsets, scratch: &mut Scratch) -> Lobe {
+    place(begin, offsets, &mut scratch.samples);
+    shine(facets, &mut scratch.samples, &mut scratch.terms);
     let (samples, seen) = (&scratch.samples, &mut scratch.seen);
     see(begin.normal, samples, seen);
     let at_mean = narrowed(begin, least, samples, seen);
-    if !is_free {
-        return at_mean.0;
-    }
     let mut best = at_mean;
-    let mode = mode(samples);
+    let mode = mode(samples, seen);
     if mode[2] > LEAST_Z {
-        see(mode, samples, seen);
         let begin = Lobe { normal: mode, a2: least + 0.25 * (at_mean.0.a2 - least) };
-        let at_mode = narrowed(begin, least, samples, seen);
-        if at_mode.1 < best.1 {
-            best = at_mode;
+        if error_of(begin, samples) < HOPELESS * best.1 {
+            see(mode, samples, seen);
+            let at_mode = narrowed(begin, least, samples, seen);
+            if at_mode.1 < best.1 {
+                best = at_mode;
+            }
         }
     }
-    best = moved(best, samples, seen);
+    best = moved(best, samples);
     see(best.0.normal, samples, seen);
     best = narrowed(best.0, least, samples, seen);
     if best.1 < (1.0 - WORTH) * at_mean.1 { best.0 } else { at_mean.0 }
@@ -174,7 +187,7 @@ fn vertex(before: f32, here: f32, after: f32) -> f32 {
 
 /// The lobe moved downhill across its normal, in steps of its width: to the vertices of parabolas along two axes, or to the best of
 /// the points that these were laid through.
-fn moved((mut at, mut found): (Lobe, f32), samples: &[Samples], seen: &mut Vec<Seen>) -> (Lobe, f32) {
+fn moved((mut at, mut found): (Lobe, f32), samples: &[Samples]) -> (Lobe, f32) {
     for step in TILTS {
         let r = at.a2.sqrt() * step;
         let from = at.normal;
@@ -184,8 +197,7 @@ fn moved((mut at, mut found): (Lobe, f32), samples: &[Samples], seen: &mut Vec<S
             if normal[2] < LEAST_Z {
                 return f32::MAX;
             }
-            see(normal, samples, seen);
-            let next = error(at.a2, samples, seen);
+            let next = error_of(Lobe { normal, ..at }, samples);
             if next < found {
                 (at.normal, found) = (normal, next);
             }
@@ -200,13 +212,14 @@ fn moved((mut at, mut found): (Lobe, f32), samples: &[Samples], seen: &mut Vec<S
     (at, found)
 }
 
-/// The half vector where the facets are densest.
-fn mode(samples: &[Samples]) -> [f32; 3] {
+/// The half vector where the facets are densest: away from grazing light, D is near to four times radiance and n·v.
+fn mode(samples: &[Samples], seen: &[Seen]) -> [f32; 3] {
     let (mut most, mut at) = (-1.0, [0.0, 0.0, 1.0]);
-    for block in samples {
+    for (block, seen) in samples.iter().zip(seen) {
         for lane in 0..LANES {
-            if block.density[lane] > most {
-                (most, at) = (block.density[lane], block.half.map(|component| component[lane]));
+            let density = block.exact[lane] * seen.view[lane];
+            if density > most {
+                (most, at) = (density, block.half.map(|component| component[lane]));
             }
         }
     }
@@ -222,112 +235,116 @@ fn tilted([x, y, z]: [f32; 3], p: f32, q: f32) -> [f32; 3] {
     [(x + p - x * along) * scale, (y + q - y * along) * scale, (z - p * x - q * y) * scale]
 }
 
-/// Three quarters of the half vectors lie in the lobes of the facets, evenly among them, the others in the wide one.
-#[multiversion(targets("x86_64+avx2", "x86_64+avx"))]
-fn place(facets: &[Lobe], wide: Lobe, offsets: &Offsets, samples: &mut Vec<Samples>) {
-    samples.clear();
-    let of_facets = offsets.0.len() * 3 / 4 * LANES;
-    for (block, offset) in offsets.0.iter().enumerate() {
-        let (mut normal, mut a) = ([[0.0_f32; LANES]; 3], [0.0_f32; LANES]);
-        for lane in 0..LANES {
-            let k = block * LANES + lane;
-            let lobe = if k < of_facets { facets[k * facets.len() / of_facets] } else { wide };
-            for c in 0..3 {
-                normal[c][lane] = lobe.normal[c];
-            }
-            a[lane] = lobe.a2;
-        }
-        let mut out = Samples { view: offset.view, ..Samples::default() };
+/// Half vectors in a lobe, of density D (h·n): with r the slope over α and c = h·n, π D (h·n) = 1/(α² c³ (1 + r²)²).
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+avx"))]
+fn place(lobe: Lobe, offsets: &Offsets, samples: &mut Vec<Samples>) {
+    samples.resize(offsets.0.len(), Samples::default());
+    let a = lobe.a2.sqrt();
+    let [x, y, z] = lobe.normal;
+    let s = 1.0 / (1.0 + z);
+    for (out, offset) in samples.iter_mut().zip(&offsets.0) {
+        let Offset { slope, rarity, view } = *offset;
+        let mut block = Samples { view, ..Samples::default() };
         for k in 0..LANES {
-            let a = a[k].sqrt();
-            let half =
-                tilted([normal[0][k], normal[1][k], normal[2][k]], a * offset.slope[0][k], a * offset.slope[1][k]);
-            let [vx, vy, vz] = [offset.view[0][k], offset.view[1][k], offset.view[2][k]];
-            let cos = half[0] * vx + half[1] * vy + half[2] * vz;
-            (out.half[0][k], out.half[1][k], out.half[2][k]) = (half[0], half[1], half[2]);
-            let twice = 2.0 * cos;
-            let light = [twice * half[0] - vx, twice * half[1] - vy, twice * half[2] - vz];
-            (out.light[0][k], out.light[1][k], out.light[2][k]) = (light[0], light[1], light[2]);
+            let (p, q) = (a * slope[0][k], a * slope[1][k]);
+            let along = (p * x + q * y) * s;
+            let c2 = 1.0 / (1.0 + p * p + q * q);
+            let c = c2.sqrt();
+            let (hx, hy, hz) = ((x + p - x * along) * c, (y + q - y * along) * c, (z - p * x - q * y) * c);
+            let twice = 2.0 * (hx * view[0][k] + hy * view[1][k] + hz * view[2][k]);
+            let weight = twice.max(0.0) * (rarity[k] * (c2 * c));
             // Lights below the surface are none.
-            out.weight[k] = if cos > 0.0 && light[2] > 0.0 { cos } else { 0.0 };
+            block.weight[k] = if twice * hz - view[2][k] > 0.0 { weight } else { 0.0 };
+            block.half[0][k] = hx;
+            block.half[1][k] = hy;
+            block.half[2][k] = hz;
+            block.twice[k] = twice;
         }
-        samples.push(out);
+        *out = block;
     }
 }
 
-/// What the facets show, and the weights.
-#[multiversion(targets("x86_64+avx2", "x86_64+avx"))]
-fn shine(facets: &[Lobe], wide: Lobe, samples: &mut [Samples]) {
-    let share = 1.0 / facets.len() as f32;
+/// What the facets show.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+avx"))]
+fn shine(facets: &[Facet], samples: &mut [Samples], terms: &mut Vec<Terms>) {
+    terms.clear();
+    for facet in facets {
+        terms.push(Terms::of(facet));
+    }
     for block in samples {
-        let (mut density, mut exact) = ([0.0_f32; LANES], [0.0_f32; LANES]);
-        for facet in facets {
-            add_facet(*facet, block, &mut density, &mut exact);
+        let mut exact = [0.0_f32; LANES];
+        for facet in terms.iter() {
+            for k in 0..LANES {
+                exact[k] += facet.radiance(block.against(facet.normal, k));
+            }
         }
-        let (mut of_wide, mut unused) = ([0.0_f32; LANES], [0.0_f32; LANES]);
-        add_facet(wide, block, &mut of_wide, &mut unused);
-        for k in 0..LANES {
-            block.density[k] = density[k] * share;
-            block.exact[k] = exact[k] * share;
-            block.weight[k] /= 0.75 * block.density[k] + 0.25 * of_wide[k];
-        }
+        block.exact = exact;
     }
 }
 
-/// Adds π D (h·n) and 2π times the radiance of a facet. Smith's masking is that of Hammon 2017, without square roots: V = ½ /
-/// (2 (1 − α) (n·l) (n·v) + α (n·l + n·v)).
-#[inline(always)]
-fn add_facet(facet: Lobe, of: &Samples, density: &mut Lanes, exact: &mut Lanes) {
-    let ([x, y, z], a2) = (facet.normal, facet.a2);
-    let a = a2.sqrt();
-    let both = 2.0 - 2.0 * a;
-    for k in 0..LANES {
-        let (dx, dy, dz) = (of.half[0][k] - x, of.half[1][k] - y, of.half[2][k] - z);
-        let d2 = dx * dx + dy * dy + dz * dz;
-        let c = (1.0 - 0.5 * d2).max(0.0);
-        // sin² from the distance: 1 − cos² would lose it near the peak.
-        let t = d2 * (1.0 - 0.25 * d2) + a2 * (c * c);
-        let cv = x * of.view[0][k] + y * of.view[1][k] + z * of.view[2][k];
-        let cl = (x * of.light[0][k] + y * of.light[1][k] + z * of.light[2][k]).max(0.0);
-        let lit = if cv > 0.0 { cl } else { 0.0 };
-        let cv = cv.max(1e-3);
-        let masking = both * (cl * cv) + a * (cl + cv);
-        let d = a2 / (t * t * masking);
-        density[k] += d * masking * c;
-        exact[k] += d * lit;
+/// A facet, and what is the same of it for all half vectors.
+#[derive(Clone, Copy, Debug)]
+struct Terms {
+    normal: [f32; 3],
+    /// α² times the weight.
+    power: f32,
+    /// 1 − α².
+    rest: f32,
+    a: f32,
+    /// 2 − 2α.
+    both: f32,
+}
+
+impl Terms {
+    #[inline(always)]
+    fn of(Facet { lobe, weight }: &Facet) -> Terms {
+        let a = lobe.a2.sqrt();
+        Terms { normal: lobe.normal, power: lobe.a2 * weight, rest: 1.0 - lobe.a2, a, both: 2.0 - 2.0 * a }
+    }
+
+    /// 2π times radiance. Smith's masking is that of Hammon 2017, without square roots: V = ½ / (2 (1 − α) (n·l) (n·v) +
+    /// α (n·l + n·v)).
+    #[inline(always)]
+    fn radiance(&self, (cos2, light, view): (f32, f32, f32)) -> f32 {
+        let t = 1.0 - self.rest * cos2;
+        let masking = self.both * (light * view) + self.a * (light + view);
+        light * (self.power / (t * t * masking))
     }
 }
 
 /// Samples against a normal.
-#[multiversion(targets("x86_64+avx2", "x86_64+avx"))]
-fn see([x, y, z]: [f32; 3], samples: &[Samples], seen: &mut Vec<Seen>) {
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+avx"))]
+fn see(normal: [f32; 3], samples: &[Samples], seen: &mut Vec<Seen>) {
     seen.resize(samples.len(), Seen::default());
     for (of, seen) in samples.iter().zip(seen) {
         for k in 0..LANES {
-            let (dx, dy, dz) = (of.half[0][k] - x, of.half[1][k] - y, of.half[2][k] - z);
-            let d2 = dx * dx + dy * dy + dz * dz;
-            let c = (1.0 - 0.5 * d2).max(0.0);
-            let cv = x * of.view[0][k] + y * of.view[1][k] + z * of.view[2][k];
-            let cl = (x * of.light[0][k] + y * of.light[1][k] + z * of.light[2][k]).max(0.0);
-            seen.sin2[k] = d2 * (1.0 - 0.25 * d2);
-            seen.cos2[k] = c * c;
-            seen.light[k] = if cv > 0.0 { cl } else { 0.0 };
-            seen.view[k] = cv.max(1e-3);
+            (seen.cos2[k], seen.light[k], seen.view[k]) = of.against(normal, k);
         }
     }
 }
 
 /// L1 error of a lobe of this α² around the normal that was seen, up to a factor that is the same for all.
-#[multiversion(targets("x86_64+avx2", "x86_64+avx"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+avx"))]
 fn error(a2: f32, samples: &[Samples], seen: &[Seen]) -> f32 {
-    let a = a2.sqrt();
-    let both = 2.0 - 2.0 * a;
+    let terms = Terms::of(&Facet { lobe: Lobe { normal: [0.0; 3], a2 }, weight: 1.0 });
     let mut sums = [0.0_f32; LANES];
     for (of, seen) in samples.iter().zip(seen) {
         for k in 0..LANES {
-            let t = seen.sin2[k] + a2 * seen.cos2[k];
-            let masking = both * (seen.light[k] * seen.view[k]) + a * (seen.light[k] + seen.view[k]);
-            sums[k] += of.weight[k] * (a2 * seen.light[k] / (t * t * masking) - of.exact[k]).abs();
+            let radiance = terms.radiance((seen.cos2[k], seen.light[k], seen.view[k]));
+            sums[k] += of.weight[k] * (radiance - of.exact[k]).abs();
+        }
+    }
+    sums.iter().sum()
+}
+
+/// The same of a lobe around any normal.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+avx"))]
+fn error_of(lobe: Lobe, samples: &[Samples]) -> f32 {
+    let terms = Terms::of(&Facet { lobe, weight: 1.0 });
+    let mut sums = [0.0_f32; LANES];
+    for of in samples {
+        for k in 0..LANES {
+            sums[k] += of.weight[k] * (terms.radiance(of.against(lobe.normal, k)) - of.exact[k]).abs();
         }
     }
     sums.iter().sum()

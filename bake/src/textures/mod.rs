@@ -15,6 +15,7 @@ pub mod options;
 pub mod paper;
 pub mod quality;
 pub mod reference;
+mod surface;
 
 pub use bake::bake;
 pub use baked::{Level, Textures};
