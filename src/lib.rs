@@ -7,6 +7,7 @@ pub mod commands;
 pub mod delivery;
 mod depfile;
 pub mod exit;
+mod gltf;
 pub mod info;
 pub mod input;
 pub mod methods;

@@ -34,6 +34,8 @@ mod folder;
 mod foreign;
 #[path = "cli/generate.rs"]
 mod generate;
+#[path = "cli/gltf_file.rs"]
+mod gltf_file;
 #[path = "cli/info.rs"]
 mod info;
 #[path = "cli/inputs_build.rs"]
@@ -79,8 +81,12 @@ mod support;
 mod surface;
 #[path = "cli/textures.rs"]
 mod textures;
+#[path = "cli/textures_gltf.rs"]
+mod textures_gltf;
 #[path = "cli/textures_readers.rs"]
 mod textures_readers;
+#[path = "cli/textures_udim.rs"]
+mod textures_udim;
 #[cfg(feature = "view")]
 #[path = "cli/view.rs"]
 mod view;

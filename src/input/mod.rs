@@ -28,6 +28,6 @@ mod transfer;
 pub use error::InputError;
 pub use guard::{guarded, is_decoding};
 pub use limits::MAX_SIDE;
-pub use normal_map::{LoadedMap, load_normal_map};
+pub use normal_map::{LoadedMap, load_normal_map, normal_map_of};
 pub use options::{Channels, ColourSpace, Crop, DEFAULT_MAX_MEMORY, InputOptions};
-pub use scalar_map::{LoadedScalar, load_scalar_map};
+pub use scalar_map::{LoadedScalar, load_scalar_map, scalar_map_of};

@@ -44,7 +44,15 @@ pub struct LoadedMap {
 /// what to do.
 pub fn load_normal_map(path: &Path, options: &InputOptions) -> Result<LoadedMap, InputError> {
     let bytes = read(path, options.max_memory)?;
-    let (pixels, mut warnings) = guarded(path, || decode(path, &bytes, options))?;
+    normal_map_of(path, &bytes, options)
+}
+
+/// The same for bytes that are there already; `path` is what messages call them.
+///
+/// # Errors
+/// Those of [`load_normal_map`].
+pub fn normal_map_of(path: &Path, bytes: &[u8], options: &InputOptions) -> Result<LoadedMap, InputError> {
+    let (pixels, mut warnings) = guarded(path, || decode(path, bytes, options))?;
     let orientation = pixels.stored.orientation;
     // Vectors that may have to be turned are looked at as a whole.
     let (part, rest) = if orientation.is_as_stored() { (options.crop, None) } else { (None, options.crop) };
@@ -63,13 +71,7 @@ pub fn load_normal_map(path: &Path, options: &InputOptions) -> Result<LoadedMap,
         NormalOptions { wrap: options.wrap, y: if options.height.is_some() { GreenAxis::Up } else { options.y } };
     let (map, report) = NormalMap::from_vectors(&raw, &normal_options).map_err(|e| from_bake(path, e))?;
     warn_of(&report, options, &mut warnings);
-    Ok(LoadedMap {
-        map,
-        report,
-        digest: digest(path, &bytes, &mut warnings),
-        warnings,
-        convention: convention(options),
-    })
+    Ok(LoadedMap { map, report, digest: digest(path, bytes, &mut warnings), warnings, convention: convention(options) })
 }
 
 /// Pixels of any format as they are shown, and the notes of reading them.

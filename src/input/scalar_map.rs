@@ -43,9 +43,24 @@ pub fn load_scalar_map(
     crop: Option<Crop>,
     max_memory: u64,
 ) -> Result<LoadedScalar, InputError> {
-    let options = InputOptions { max_memory, ..InputOptions::default() };
     let bytes = read(path, max_memory)?;
-    let (pixels, mut warnings) = guarded(path, || decode(path, &bytes, &options))?;
+    scalar_map_of(path, &bytes, channel, flag, crop, max_memory)
+}
+
+/// The same for bytes that are there already; `path` is what messages call them.
+///
+/// # Errors
+/// Those of [`load_scalar_map`].
+pub fn scalar_map_of(
+    path: &Path,
+    bytes: &[u8],
+    channel: Option<usize>,
+    flag: &str,
+    crop: Option<Crop>,
+    max_memory: u64,
+) -> Result<LoadedScalar, InputError> {
+    let options = InputOptions { max_memory, ..InputOptions::default() };
+    let (pixels, mut warnings) = guarded(path, || decode(path, bytes, &options))?;
     let Pixels { width, height, values, .. } = pixels;
     let mut numbers = one_channel(path, width, &values, channel, flag)?;
     drop(values);
@@ -58,7 +73,7 @@ pub fn load_scalar_map(
         let (x, y) = (at as u32 % size.0 + from.0, at as u32 / size.0 + from.1);
         return Err(InputError::bad(path, format!("texel ({x}, {y}) is {}; expected 0 to 1", numbers[at])));
     }
-    let digest = digest(path, &bytes, &mut warnings);
+    let digest = digest(path, bytes, &mut warnings);
     Ok(LoadedScalar { width: size.0, height: size.1, values: numbers, digest, warnings })
 }
 

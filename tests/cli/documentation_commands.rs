@@ -142,9 +142,12 @@ fn normalised(line: &str) -> String {
     out.join(" ")
 }
 
-/// A folder with the files of the repository that pages name; for the page of flags also with what the examples of helps name.
+/// A folder with the files of the repository that pages name, and a mesh; for the page of flags also with what the examples of helps
+/// name.
 fn folder(page: &Path) -> tempfile::TempDir {
     let folder = if page == Path::new("docs/CLI.md") { inputs() } else { tempfile::tempdir().unwrap() };
+    let model = crate::gltf_file::quad(r#"[{"normalTexture": {"index": 0}}]"#);
+    fs::write(folder.path().join("model.glb"), model).unwrap();
     for part in ["fixtures/maps", "docs/examples"] {
         fs::create_dir_all(folder.path().join(part)).unwrap();
         for entry in fs::read_dir(root().join(part)).unwrap() {

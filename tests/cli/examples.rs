@@ -58,6 +58,8 @@ pub fn inputs() -> tempfile::TempDir {
     }
     fs::write(inputs.path().join("glint.toml"), PROJECT).unwrap();
     fs::write(inputs.path().join("scene.toml"), SCENE).unwrap();
+    let material = r#"[{"normalTexture": {"index": 0}}]"#;
+    fs::write(inputs.path().join("model.glb"), crate::gltf_file::quad(material)).unwrap();
     inputs
 }
 

@@ -1,6 +1,7 @@
 //! Meshes of `glint-view` as they come: what they are drawn as, what is said, and which codes refusals have.
 
-use crate::support::{Outcome, packs, root};
+use crate::gltf_file::quad;
+use crate::support::{Outcome, bake, packs, root};
 use crate::view::folder;
 use assert_cmd::Command;
 use std::fs;
@@ -68,6 +69,25 @@ fn the_same_mesh_is_the_same_picture() {
         });
         let difference: u64 = one.iter().zip(&other).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
         assert!(difference < one.len() as u64, "{difference} of {} values", one.len());
+    }
+}
+
+/// What `glint-bake textures --gltf` writes is the same mesh: its materials are not drawn, where their textures lie is.
+#[test]
+fn other_textures_leave_the_mesh_as_it_was() {
+    let Some(folder) = folder() else { return };
+    let folder = folder.path();
+    let transform = r#"{"KHR_texture_transform": {"scale": [3, 3]}}"#;
+    let material = format!(r#"[{{"normalTexture": {{"index": 0, "extensions": {transform}}}}}]"#);
+    fs::write(folder.join("quad.glb"), quad(&material)).unwrap();
+    for mesh in [Some("quad.glb".to_owned()), data("mesh/clearcoat_carpaint_sphere.glb")].into_iter().flatten() {
+        bake(folder, &["textures", "--gltf", &mesh, "-o", "calm.glb", "--gltf-images", "ktx2-only"]).ok();
+        let [one, other] = [&mesh, "calm.glb"].map(|mesh| {
+            let (outcome, picture) = draw(folder, mesh);
+            outcome.ok();
+            picture
+        });
+        assert!(one == other && !one.is_empty(), "{mesh}");
     }
 }
 

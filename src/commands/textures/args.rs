@@ -1,19 +1,21 @@
 //! Flags of `glint-bake textures`.
 
 use super::encode::{Format, Layout};
+use super::gltf_flags::GltfFlags;
 use super::target::{Channel, Stored, Target};
 use crate::cli::normal_maps::{InputFlags, NormalY, check_name, name_of_file};
 use crate::cli::values;
 use crate::exit::Failure;
 use clap::ValueEnum;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Lines that `--help` shows and a test runs.
 const EXAMPLES: &str = "\
 Examples:
   glint-bake textures flakes.png -o textures
   glint-bake textures flakes.png --roughness 0.3 --target unreal --format png -o textures
-  glint-bake textures flakes.png --roughness-map flakes.png --roughness-channel b -o textures";
+  glint-bake textures flakes.png --roughness-map flakes.png --roughness-channel b -o textures
+  glint-bake textures --gltf model.glb --zstd -o calm.glb";
 
 /// Write a normal map and its roughness as textures whose mips are filtered, for any engine
 ///
@@ -24,10 +26,12 @@ Examples:
 #[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Normal map: PNG, TGA, JPEG, TIFF, WebP or EXR
-    #[arg(value_name = "NORMAL_MAP")]
-    pub map: PathBuf,
-    /// Folder to write into; it is created
-    #[arg(short, long, value_name = "DIR")]
+    ///
+    /// With <UDIM> in the names of maps every tile is filtered, its edges clamped; numbers stay in the names.
+    #[arg(value_name = "NORMAL_MAP", required_unless_present = "gltf")]
+    pub map: Option<PathBuf>,
+    /// Folder to write into; it is created. With --gltf, the file to write
+    #[arg(short, long, value_name = "DIR|FILE")]
     pub output: PathBuf,
     /// What names of files begin with [default: the normal map's name]
     #[arg(long, value_name = "NAME")]
@@ -84,6 +88,13 @@ pub struct Args {
     #[arg(long, value_name = "KIND", help_heading = "Output")]
     pub store: Option<Stored>,
 
+    /// Number of the tile of a UDIM set that these are the arguments of.
+    #[arg(skip)]
+    pub tile: Option<u32>,
+    /// A glTF file instead of maps.
+    #[command(flatten)]
+    pub gltf: GltfFlags,
+
     /// How the map is read.
     #[command(flatten)]
     pub input: InputFlags,
@@ -133,12 +144,24 @@ fn bits(text: &str) -> Result<u32, String> {
 }
 
 impl Args {
+    /// Refuses values that do not go together and that the parser cannot tell.
+    ///
+    /// # Errors
+    /// Usage.
+    pub fn check(&self) -> Result<(), Failure> {
+        self.gltf.check()?;
+        if self.gltf.gltf.is_some() && !matches!(self.target, Target::Gltf | Target::Bevy) {
+            return Err(Failure::usage("--target: with --gltf expected gltf or bevy, whose textures glTF can hold"));
+        }
+        Ok(())
+    }
+
     /// What names of files begin with.
     ///
     /// # Errors
     /// Usage, when it cannot be part of a file's name.
-    pub fn stem(&self) -> Result<String, Failure> {
-        let Some(name) = &self.name else { return Ok(name_of_file(&self.map)) };
+    pub fn stem(&self, map: &Path) -> Result<String, Failure> {
+        let Some(name) = &self.name else { return Ok(name_of_file(map)) };
         check_name(name)?;
         if name.contains(['/', '\\']) || name.starts_with('.') {
             return Err(Failure::usage(format!(
@@ -146,6 +169,11 @@ impl Args {
             )));
         }
         Ok(name.clone())
+    }
+
+    /// The number of the tile as names have it last; empty without one.
+    pub fn number(&self) -> String {
+        self.tile.map_or(String::new(), |number| format!(".{number}"))
     }
 
     /// How files are stored.
@@ -180,7 +208,7 @@ impl Args {
 
     /// All files that are read.
     pub fn inputs(&self) -> Vec<PathBuf> {
-        let maps = [Some(&self.map), self.roughness_map.as_ref(), self.occlusion.as_ref(), self.metallic.as_ref()];
+        let maps = [self.map.as_ref(), self.roughness_map.as_ref(), self.occlusion.as_ref(), self.metallic.as_ref()];
         let mut inputs: Vec<PathBuf> = Vec::new();
         for path in maps.into_iter().flatten() {
             // One file may hold several of them, in its channels.

@@ -164,7 +164,8 @@ impl Layout {
         out
     }
 
-    fn png(
+    /// A level as a PNG.
+    pub fn png(
         &self,
         plan: &Plan,
         level: usize,

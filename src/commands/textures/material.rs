@@ -44,18 +44,18 @@ impl Averaged<'_> {
 }
 
 impl Material {
+    /// A material without other maps.
+    pub fn constant(roughness: Roughness) -> Material {
+        Material { roughness, occlusion: None, metallic: None, digests: Vec::new(), warnings: Vec::new() }
+    }
+
     /// Loads what the flags name.
     ///
     /// # Errors
     /// Those of [`load_scalar_map`].
     pub fn load(args: &Args, map: &NormalMap, terminal: Terminal) -> Result<Material, Failure> {
-        let mut material = Material {
-            roughness: Roughness::Constant(perceptual(args.roughness_is, args.roughness)),
-            occlusion: None,
-            metallic: None,
-            digests: Vec::new(),
-            warnings: Vec::new(),
-        };
+        let roughness = perceptual(args.roughness_is, args.roughness);
+        let mut material = Material::constant(Roughness::Constant(roughness));
         let mut load =
             |path: &Path, channel: Option<super::args::ChannelArg>, flag: &str| -> Result<Vec<f32>, Failure> {
                 let column = channel.map(|channel| channel as usize);

@@ -2,9 +2,13 @@
 
 mod args;
 mod encode;
+mod gltf;
+mod gltf_flags;
 mod list;
 mod material;
 mod target;
+mod texels;
+mod udim;
 
 pub use args::Args;
 
@@ -16,50 +20,63 @@ use crate::output;
 use crate::progress::Stages;
 use crate::reading;
 use encode::{Layout, Plan};
-use glint_bake_core::textures::{self, Level, TexturesOptions};
+use glint_bake_core::textures::{self, TexturesOptions};
 use glint_formats::WriteOutcome;
 use list::List;
 use material::Material;
 use std::path::{Path, PathBuf};
 use target::Channel;
+use texels::Texels;
 
 /// Runs the subcommand.
 pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
-    on_threads(args.threads, || bake(args, terminal))?
+    args.check()?;
+    on_threads(args.threads, || match (&args.gltf.gltf, &args.map) {
+        (Some(file), _) => gltf::run(file, args, terminal),
+        (None, Some(map)) => match udim::tiles(args)? {
+            None => bake(map, args, terminal),
+            Some(tiles) => tiles.iter().try_for_each(|tile| bake(tile.map.as_deref().unwrap_or(map), tile, terminal)),
+        },
+        (None, None) => Err(Failure::usage("expected a normal map, or a glTF file as --gltf FILE, found neither")),
+    })?
 }
 
 /// Checks everything, then bakes and writes.
-fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
-    let (stem, layout) = (args.stem()?, args.layout()?);
+fn bake(map: &Path, args: &Args, terminal: Terminal) -> Result<(), Failure> {
+    let (stem, number, layout) = (args.stem(map)?, args.number(), args.layout()?);
     let inputs = args.inputs();
     check_streams(args, &inputs)?;
     for path in &inputs {
         reading::check_readable(path).map_err(|e| Failure::io(path, "cannot be read", &e))?;
     }
-    let list_path = args.output.join(format!("{stem}.json"));
+    let list_path = args.output.join(format!("{stem}{number}.json"));
     let depends: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
     let rule = args.depfile.as_ref().map(|_| depfile::rule(&list_path, &depends)).transpose()?;
 
-    let loaded = load_normal_map(&args.map, &args.input.options(args.max_memory))?;
+    let loaded = load_normal_map(map, &args.input.options(args.max_memory))?;
     for warning in &loaded.warnings {
-        terminal.warn(&format!("{}: {warning}", args.map.display()));
+        terminal.warn(&format!("{}: {warning}", map.display()));
     }
     let material = Material::load(args, &loaded.map, terminal)?;
     let size = (loaded.map.width, loaded.map.height);
     let options = TexturesOptions { max_memory: args.max_memory };
-    options.check(&loaded.map).map_err(|e| Failure::bake(&args.map, &e))?;
+    options.check(&loaded.map).map_err(|e| Failure::bake(map, &e))?;
     material.roughness.validate(&loaded.map).map_err(Failure::from)?;
 
     // BC5 has two channels.
     let two_channel = args.two_channel || args.blocks;
-    let normal_plan =
-        Plan { name: format!("{stem}_normal"), channels: if two_channel { 2 } else { 4 }, opaque: !two_channel, size };
+    let normal_plan = Plan {
+        name: format!("{stem}_normal{number}"),
+        channels: if two_channel { 2 } else { 4 },
+        opaque: !two_channel,
+        size,
+    };
     let companions: Vec<(Plan, &[Channel])> = args
         .companions()
         .into_iter()
         .map(|(suffix, channels)| {
             let opaque = channels.last() == Some(&Channel::One);
-            (Plan { name: format!("{stem}_{suffix}"), channels: channels.len(), opaque, size }, channels)
+            (Plan { name: format!("{stem}_{suffix}{number}"), channels: channels.len(), opaque, size }, channels)
         })
         .collect();
     let plans = || std::iter::once(&normal_plan).chain(companions.iter().map(|(plan, _)| plan));
@@ -85,9 +102,9 @@ fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     paths.iter().try_for_each(|path| output::check_writable(path))?;
 
     let stages = Stages::new(terminal);
-    let baked = textures::bake(&loaded.map, &material.roughness, &options, &stages)
-        .map_err(|e| Failure::bake(&args.map, &e))?;
-    let finest = Finest { map: &loaded.map, material: &material };
+    let baked =
+        textures::bake(&loaded.map, &material.roughness, &options, &stages).map_err(|e| Failure::bake(map, &e))?;
+    let texels = Texels::new(&loaded.map, &material, &baked.levels);
     let mut list = List::new(args, &loaded, &material);
     let mut write = |plan: &Plan, value: &(dyn Fn(usize, usize) -> [f32; 4] + Sync)| -> Result<(), Failure> {
         for (name, bytes) in layout.files(plan).into_iter().zip(layout.encode(plan, value)?) {
@@ -99,27 +116,10 @@ fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         Ok(())
     };
     let down = args.green_down();
-    write(&normal_plan, &|level, k| {
-        let [x, y] = if level == 0 { finest.map.projected[k] } else { baked.levels[level - 1].normals[k] };
-        let z = (1.0 - x * x - y * y).max(0.0).sqrt();
-        [0.5 + 0.5 * x, if down { 0.5 - 0.5 * y } else { 0.5 + 0.5 * y }, 0.5 + 0.5 * z, 1.0]
-    })?;
-    let occlusion = material.levels(material.occlusion.as_deref(), size);
-    let metallic = material.levels(material.metallic.as_deref(), size);
+    write(&normal_plan, &|level, k| texels.normal(level, k, down))?;
     let stored = args.stored();
     for (plan, channels) in &companions {
-        write(plan, &|level, k| {
-            let mut texel = [0.0; 4];
-            for (value, channel) in texel.iter_mut().zip(*channels) {
-                *value = match channel {
-                    Channel::Roughness => stored.of_alpha(finest.alpha(&baked.levels, level, k)),
-                    Channel::Occlusion => occlusion.value(level, k),
-                    Channel::Metallic => metallic.value(level, k),
-                    Channel::One => 1.0,
-                };
-            }
-            texel
-        })?;
+        write(plan, &|level, k| texels.channels(channels, stored, level, k))?;
     }
     if let (Some(path), Some(rule)) = (&args.depfile, rule) {
         output::write(path, rule.as_bytes())?;
@@ -131,21 +131,6 @@ fn bake(args: &Args, terminal: Terminal) -> Result<(), Failure> {
         output::print(&list.to_json())?;
     }
     Ok(())
-}
-
-/// Level 0.
-struct Finest<'a> {
-    map: &'a glint_bake_core::normal_map::NormalMap,
-    material: &'a Material,
-}
-
-impl Finest<'_> {
-    fn alpha(&self, levels: &[Level], level: usize, k: usize) -> f32 {
-        match level {
-            0 => self.material.roughness.texel(k).powi(2),
-            _ => levels[level - 1].alphas[k],
-        }
-    }
 }
 
 /// Pipes are read once, and nothing depends on them.
@@ -163,7 +148,7 @@ fn check_streams(args: &Args, inputs: &[PathBuf]) -> Result<(), Failure> {
         if args.depfile.is_some() {
             return Err(Failure::usage("--depfile: nothing can depend on a pipe or on standard input; name files"));
         }
-        let uses = [Some(&args.map), args.roughness_map.as_ref(), args.occlusion.as_ref(), args.metallic.as_ref()];
+        let uses = [args.map.as_ref(), args.roughness_map.as_ref(), args.occlusion.as_ref(), args.metallic.as_ref()];
         if uses.iter().flatten().filter(|other| **other == path).count() > 1 {
             let message =
                 format!("{}: is given twice, and can be read once only; save it as a file first", path.display());
