@@ -28,6 +28,8 @@ pub enum Purpose {
     SurfaceFootprints,
     /// Texels of an environment that are measured.
     EnvironmentTexels,
+    /// Look-ups in an environment that are measured.
+    EnvironmentReads,
     /// Explicitly placed facets of the reference of glints under an environment.
     PlacedFacets,
     /// Candidates of patches, thinned out.
@@ -40,8 +42,6 @@ pub enum Purpose {
     CornerPatches,
     /// Draws and places of the report on glints under an environment.
     GlintReport,
-    /// Directions that a plan compares two environments in.
-    EnvironmentPlan,
     /// Places on a normal map that area lights are measured at.
     AreaLightPlaces,
     /// Turns of the scenes that area lights are measured in.
@@ -61,13 +61,13 @@ impl Purpose {
             Purpose::SurfaceLobes(round) => 8 + (round << 8),
             Purpose::SurfaceFootprints => 9,
             Purpose::EnvironmentTexels => 30,
+            Purpose::EnvironmentReads => 32,
             Purpose::PlacedFacets => 31,
             Purpose::Candidates => 50,
             Purpose::Patches => 51,
             Purpose::MiddlePatches => 52,
             Purpose::CornerPatches => 53,
             Purpose::GlintReport => 60,
-            Purpose::EnvironmentPlan => 61,
             Purpose::AreaLightPlaces => 77,
             Purpose::AreaLightScenes => 99,
             Purpose::Test(number) => number,

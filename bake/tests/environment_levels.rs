@@ -4,17 +4,18 @@ use glam::{DVec3, Vec3};
 use glint_bake_core::environment::albedo::{areas, facet_area, reflecting_area_at_normal};
 use glint_bake_core::environment::cube::{face_of, texel_direction, texel_solid_angle_sr};
 use glint_bake_core::environment::eval::{
-    environment_areas, environment_mip, facet_moments, level_probabilities, std_factor,
+    environment_areas, environment_filtered, environment_radiance, environment_roughness, facet_moments,
+    level_probabilities, std_factor,
 };
 use glint_bake_core::environment::image::{direction, luminance};
 use glint_bake_core::environment::levels::{RadianceHistogram, fewest, log_uniform, optimal, shares};
-use glint_bake_core::environment::lookup::{colour_at, cube_taps, radiance_at};
+use glint_bake_core::environment::lookup::{colour_at, cube_taps};
 use glint_bake_core::environment::options::LevelCount;
 use glint_bake_core::environment::reference::{filtered, ggx, second_moments};
 use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, bake};
 use glint_bake_core::progress::Silent;
 use glint_bake_core::rng::{ItemRng, Purpose};
-use glint_formats::environment::{Kernel, LevelChoice};
+use glint_formats::environment::{Kernel, LevelChoice, roughness_of};
 use std::f64::consts::PI;
 
 /// Random radiance over several decades, with two lamps.
@@ -33,9 +34,10 @@ fn baked(image: &EnvironmentImage, levels: u32, coloured: bool) -> Environment {
     let options = EnvironmentOptions {
         face_size: 32,
         min_face_size: 1,
+        per_size: 2,
         levels: LevelCount::Exactly(levels),
         coloured,
-        measured_texels: 0,
+        measured_reads: 0,
         ..EnvironmentOptions::default()
     };
     bake(image, &options, &Silent).unwrap()
@@ -109,22 +111,24 @@ fn the_estimate_of_the_second_moment_is_that_of_the_reference() {
 fn stored_levels_have_the_moments_of_the_source() {
     let image = image();
     let environment = baked(&image, 8, false);
-    let (mip, size) = (3, 4);
-    let alpha = environment.params.roughness[mip as usize];
+    // The first of two roughnesses of faces of 4 texels.
+    let (index, size) = (5, 4);
+    assert_eq!(environment.params.size(index), size);
+    let alpha = environment.params.roughness[index as usize];
     for k in 0..12u32 {
         let (face, i, j) = ((k % 6) as usize, k % 4, k / 3);
         let n = texel_direction(face, i, j, size);
-        let exact = filtered(&image, Kernel::Ndf, n, alpha);
+        let exact = filtered(&image, environment.params.kernel, n, alpha);
         let (n, visible) = (n.as_vec3(), 0.8);
-        let at = environment_mip(&environment, alpha as f32);
-        let p = level_probabilities(&environment, n, at, visible);
+        let at = environment_roughness(&environment, alpha as f32);
+        let p = level_probabilities(&environment, n, &at, visible);
         assert!((p.iter().sum::<f32>() - 1.0).abs() < 1e-6);
         let moments = facet_moments(&environment, &p);
         let mean = f64::from(visible) * exact.luminance;
         assert!((f64::from(moments[0]) / mean - 1.0).abs() < 0.01, "{k}: {moments:?} {mean}");
         // Levels vary too much, never too little; matched, they vary as the source does.
         assert!(f64::from(moments[1]) > 0.995 * f64::from(visible) * exact.square, "{k}");
-        let rms = radiance_at(&environment, n, at)[3];
+        let rms = environment_filtered(&environment, n, &at)[3];
         let s = std_factor(moments, rms * rms, visible);
         let variance = f64::from(visible) * exact.square - mean * mean;
         let of_levels = moments[1] - moments[0] * moments[0];
@@ -138,19 +142,21 @@ fn red_and_blue_lamps_make_red_and_blue_levels() {
     let image = image();
     let environment = baked(&image, 4, true);
     let towards = |x: f64| direction(2.0 * PI * (x / 64.0 - 0.5), (PI * (0.5 - 12.5 / 32.0)).sin()).as_vec3();
-    let sharp = environment_mip(&environment, 0.1);
+    let sharp = environment_roughness(&environment, 0.1).colour_mip;
     let red = colour_at(&environment, 2, towards(9.5), sharp);
     let blue = colour_at(&environment, 2, towards(49.5), sharp);
     assert!(red[0] > 10.0 * red[2] && blue[2] > 10.0 * blue[0], "{red:?} {blue:?}");
     // Levels with their colours add up to the filtered colour.
     let n = texel_direction(1, 2, 1, 4).as_vec3();
-    let at = environment_mip(&environment, environment.params.roughness[3] as f32);
-    let shares = level_probabilities(&environment, n, at, 1.0);
-    let radiance = radiance_at(&environment, n, at);
+    // The roughness of faces of 4 texels that colours have.
+    let index = 5 + environment.params.colour_layer();
+    let at = environment_roughness(&environment, environment.params.roughness[index as usize] as f32);
+    let shares = level_probabilities(&environment, n, &at, 1.0);
+    let radiance = environment_filtered(&environment, n, &at);
     for c in 0..3 {
         let sum: f32 = (1..4)
             .map(|k| {
-                let colour = colour_at(&environment, k - 1, n, at);
+                let colour = colour_at(&environment, k as u32 - 1, n, at.colour_mip);
                 shares[k] * environment.params.levels[k] as f32 * colour[c]
             })
             .sum();
@@ -159,7 +165,7 @@ fn red_and_blue_lamps_make_red_and_blue_levels() {
 }
 
 #[test]
-fn look_ups_are_smooth_across_edges_and_mips() {
+fn look_ups_are_smooth_across_edges_and_roughnesses() {
     let mut pixels = Vec::new();
     for y in 0..32 {
         for x in 0..64 {
@@ -180,10 +186,14 @@ fn look_ups_are_smooth_across_edges_and_mips() {
         let near = taps.texels.iter().all(|&(f, i, j)| texel_direction(f, i, j, 8).as_vec3().distance(d) < 0.5);
         assert!(near, "{d} {taps:?}");
         let alpha = (0.02 + 0.1 * rng.unit()) as f32;
-        let found = radiance_at(&environment, d, environment_mip(&environment, alpha));
+        let roughness = environment_roughness(&environment, alpha);
+        let filtered = environment_filtered(&environment, d, &roughness);
+        let found = environment_radiance(&environment, d, &roughness, filtered);
         assert!((Vec3::new(found[0], found[1], found[2]) - (Vec3::splat(2.0) + d)).length() < 0.2, "{d} {found:?}");
     }
-    assert_eq!((environment_mip(&environment, 0.0), environment_mip(&environment, 1.0)), (0.0, 5.0));
+    let [smooth, rough] = [0.0, 1.0].map(|alpha| environment_roughness(&environment, alpha));
+    assert_eq!((smooth.low, smooth.share, smooth.mirror, smooth.colour_mip), ([0, 0], 0.0, 1.0, 0.0));
+    assert_eq!((rough.high, rough.mirror, rough.colour_mip), ([4, 1], 0.0, 4.0));
 }
 
 #[test]
@@ -259,7 +269,7 @@ fn one_level_reflects_the_mean_and_log_uniform_is_eq_18() {
     let environment = baked(&image, 1, false);
     assert_eq!(environment.params.levels, [luminance(image.mean())]);
     assert!(environment.indicators.is_empty());
-    assert_eq!(level_probabilities(&environment, Vec3::Y, 0.3, 0.7)[0], 0.7);
+    assert_eq!(level_probabilities(&environment, Vec3::Y, &environment_roughness(&environment, 0.3), 0.7)[0], 0.7);
 
     let levels = log_uniform(&image, 5, 1e-2);
     let top = image.max_luminance();
@@ -272,8 +282,37 @@ fn one_level_reflects_the_mean_and_log_uniform_is_eq_18() {
         face_size: 8,
         min_face_size: 1,
         level_choice: LevelChoice::LogUniform,
-        measured_texels: 0,
+        measured_reads: 0,
         ..EnvironmentOptions::default()
     };
     assert_eq!(bake(&image, &options, &Silent).unwrap().params.levels, log_uniform(&image, 4, options.floor));
+}
+
+/// The roughness of every filtered cube is read from it alone, whatever the faces and the number of each size.
+#[test]
+fn every_roughness_finds_its_own_cube() {
+    for (face_size, min_face_size, per_size) in [(32, 1, 2), (16, 8, 1), (64, 4, 3), (4, 2, 8), (256, 16, 4)] {
+        let roughness = roughness_of(face_size, (face_size / min_face_size).ilog2() * per_size);
+        assert!(roughness.windows(2).all(|pair| pair[0] < pair[1]) && roughness[roughness.len() - 1] == 1.0);
+        let options = EnvironmentOptions {
+            face_size: face_size.min(64),
+            min_face_size: min_face_size.min(8),
+            per_size,
+            levels: LevelCount::Exactly(1),
+            measured_reads: 0,
+            ..EnvironmentOptions::default()
+        };
+        let white = EnvironmentImage::new(4, 2, vec![[1.0; 3]; 8]).unwrap();
+        let environment = bake(&white, &options, &Silent).unwrap();
+        let params = &environment.params;
+        for index in 1..=params.filtered() {
+            let found = environment_roughness(&environment, params.roughness[index as usize] as f32);
+            let (mip, layer) = params.place(index);
+            // Rounding may put it a little to either side.
+            let low = found.low == [mip, layer] && found.share < 1e-4;
+            let high = found.high == [mip, layer] && found.share > 0.9999;
+            assert!(low || high, "{face_size} {per_size} {index}: {found:?}");
+            assert!(found.mirror < 1e-6, "{found:?}");
+        }
+    }
 }

@@ -10,19 +10,25 @@ use crate::plot::{Axis, Colour, Figure, Panel, Series};
 use glint_bake_core::environment::cube::{face_of, texel_direction, texel_solid_angle_sr};
 use glint_bake_core::environment::image::luminance;
 use glint_bake_core::environment::levels::{ROUGHNESSES, RadianceHistogram, even_directions, log_uniform, optimal};
-use glint_bake_core::environment::quality::{Compared, compare, error_of};
+use glint_bake_core::environment::quality::{Cube, compare, compare_cube, error_of};
+use glint_bake_core::environment::reads;
 use glint_bake_core::environment::reference::{filtered, second_moments};
 use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, LevelCount, bake};
 use glint_bake_core::progress::Silent;
-use glint_formats::environment::Kernel;
+use glint_formats::environment::{Kernel, MeasuredTexels, SHARP};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// Folder of the images.
 const FOLDER: &str = "hdri";
-/// Texels a mip that are compared.
+/// Texels a roughness that are compared.
 const TEXELS: u32 = 64;
+/// Look-ups that are compared, and the seed they follow, which is not that of a bake.
+const READS: u32 = 4096;
+const READS_SEED: u64 = 77;
+/// Mips of cmgen's cubes.
+const CMGEN_MIPS: u32 = 9;
 /// Directions that second moments are measured in; others than the levels were chosen with.
 const DIRECTIONS: usize = 48;
 /// Counts of levels.
@@ -43,7 +49,7 @@ pub fn measure(settings: &Settings) -> Result<Document, Failure> {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         settings.terminal.say(&format!("environment: {name}"));
         let image = settings.environment(&path)?;
-        default_row(&name, &image, settings, &mut tables.defaults)?;
+        default_rows(&name, &image, settings, &mut tables)?;
         filter_rows(&name, &path, &image, settings, &mut tables, &mut points)?;
         moment_rows(&name, &image, settings, &mut tables.moments)?;
     }
@@ -51,33 +57,40 @@ pub fn measure(settings: &Settings) -> Result<Document, Failure> {
     document.paragraph(
         "Images are those of the data folder's `hdri`. CPU seconds are user and system time of all threads, of one run, from \
          decoded pixels to the finished textures; cmgen's include decoding. Exact values are sums over the source image in f64 \
-         (`reference.rs`). RMSE is that of luminance over the mean luminance, from 64 random texels a mip, half of them chosen \
-         by luminance and weighted back, so that suns are in it.",
+         (`reference.rs`).",
     );
     document.plot("", "CPU seconds against error", &figure(&points));
-    document.heading(2, "Default options");
+    document.heading(2, "What is read");
     document.paragraph(
-        "What `glint-bake environment` makes of each image without flags: the factor of stored radiance, the largest RMSE that \
-         rounding alone makes in a mip (over all texels, recorded in the pack), and each mip's RMSE (worst texel). Asked are \
-         0.02 (25 %) where α is below 0.04, 0.005 (5 %) elsewhere.",
+        "What a shader reads of what `glint-bake environment` makes of each image without flags: 4,096 look-ups, α from 0.01 to \
+         1, evenly in its logarithm, half of them in directions of their own, half with the brightest pixel within their lobe, \
+         as far from its middle as a facet is tilted by chance. *Relative*: root mean square of the errors of luminance, each \
+         over its exact value; *worst* is the largest of them. *RMSE / mean*: root mean square error over the mean of the exact \
+         values, which under a sun is that of the few look-ups that hit its core.",
     );
-    document.table(&tables.defaults);
+    document.table(&tables.reads);
+    document.heading(2, "Texels");
+    document.paragraph(
+        "The same bakes: the factor of stored radiance, the largest RMSE over the mean luminance that rounding alone makes in a \
+         roughness (over all texels, recorded in the pack), and the largest RMSE of a roughness (worst texel) over 64 random \
+         texels of each, half of them chosen by luminance and weighted back, so that suns are in it. Asked of the filter are \
+         0.02 where α is below 0.04, 0.005 elsewhere.",
+    );
+    document.table(&tables.texels);
     document.heading(2, "Filter");
     document.paragraph(
-        "Faces of 256, 9 mips, `--kernel ggx-nl`, cmgen with `--ibl-min-lod-size=1`. RMSE and worst texel over mips with α ≥ \
-         0.04, largest.",
+        "Error asked of the filter, faces of 128 to 1 texels, one roughness each; *default* has 16 roughnesses on faces of 128 \
+         to 16. cmgen with faces of 256 to 1, `--ibl-min-lod-size=1`. RMSE and worst texel over roughnesses with α ≥ 0.04, \
+         largest; each at its own roughnesses.",
     );
     document.table(&tables.filters);
-    document.heading(2, "Mips");
-    document.paragraph(
-        "`--max-error 0.005`, each mip: RMSE (worst texel), ours and cmgen's at 1024 samples. Mip 0 is compared with means over texels that are exact along 512 lines of each.",
-    );
+    document.heading(2, "Mips of cmgen");
+    document.paragraph("At 1024 samples, each mip: RMSE (worst texel).");
     document.table(&tables.mips);
     document.heading(2, "Second moment of what a facet reflects");
     document.paragraph(
-        "Mean of |⟨L²⟩ with levels / ⟨L²⟩ − 1| over 48 directions and 5 roughnesses (0.05 to 0.8), `--kernel ndf`, exact \
-         filter. The paper's levels have the best of the floors 0.01 to 1e-5 for each number. Matched: from the stored √⟨L²⟩, \
-         over the compared texels of mips with α ≥ 0.04.",
+        "Mean of |⟨L²⟩ with levels / ⟨L²⟩ − 1| over 48 directions and 5 roughnesses (0.05 to 0.8), exact filter. The paper's levels have the best of the floors 0.01 to 1e-5 for each number. Matched: from the stored √⟨L²⟩, \
+         over the compared texels of roughnesses with α ≥ 0.04.",
     );
     document.table(&tables.moments);
     Ok(document)
@@ -98,7 +111,8 @@ fn images(settings: &Settings) -> Result<Vec<PathBuf>, Failure> {
 
 /// The report's tables, which grow image by image.
 struct Tables {
-    defaults: Table,
+    reads: Table,
+    texels: Table,
     filters: Table,
     mips: Table,
     moments: Table,
@@ -107,40 +121,65 @@ struct Tables {
 impl Tables {
     fn new() -> Tables {
         Tables {
-            defaults: Table::new(1, "image | factor | rounding | 0: α 0 | 1: .011 | 2: .051 | 3: .14 | 4: .31 | 5: 1"),
+            reads: Table::new(
+                1,
+                "image | KiB | α ≥ .04: relative | worst | RMSE / mean | α < .04: relative | worst | RMSE / mean",
+            ),
+            texels: Table::new(1, "image | factor | rounding | α = 0 | 0 < α < .04 | α ≥ .04"),
             filters: Table::new(2, "image | setting | CPU s | RMSE | worst texel | energy"),
             mips: Table::new(
-                2,
-                "image | filter | 0: α 0 | 1: .004 | 2: .018 | 3: .044 | 4: .086 | 5: .15 | 6: .25 | 7: .42 | 8: 1",
+                1,
+                "image | 0: α 0 | 1: .004 | 2: .018 | 3: .044 | 4: .086 | 5: .15 | 6: .25 | 7: .42 | 8: 1",
             ),
             moments: Table::new(2, "image | levels | K = 1 | 2 | 4 | 6 | 8 | 16"),
         }
     }
 }
 
-fn options(levels: u32, max_error: f64) -> EnvironmentOptions {
+/// Options of bakes that measure nothing.
+fn defaults() -> EnvironmentOptions {
+    EnvironmentOptions { measured_reads: 0, ..EnvironmentOptions::default() }
+}
+
+fn options(levels: u32, filter_error: f64) -> EnvironmentOptions {
     EnvironmentOptions {
         min_face_size: 1,
+        per_size: 1,
         levels: LevelCount::Exactly(levels),
-        kernel: Kernel::GgxNl,
-        max_error,
-        measured_texels: 0,
-        ..EnvironmentOptions::default()
+        filter_error,
+        ..defaults()
     }
 }
 
-fn default_row(name: &str, image: &EnvironmentImage, settings: &Settings, rows: &mut Table) -> Result<(), Failure> {
-    let options = EnvironmentOptions { measured_texels: 0, ..EnvironmentOptions::default() };
+/// Error of a list of cubes, the largest of each.
+fn largest(errors: impl Iterator<Item = MeasuredTexels>) -> MeasuredTexels {
+    errors.fold(MeasuredTexels::default(), |a, b| MeasuredTexels {
+        rmse: a.rmse.max(b.rmse),
+        worst: a.worst.max(b.worst),
+    })
+}
+
+/// Errors of the texels of an environment: of the mirror, of filtered roughnesses below [`SHARP`], and of the others.
+fn texel_errors(image: &EnvironmentImage, environment: &Environment, texels: u32) -> [MeasuredTexels; 3] {
+    let mean = luminance(image.mean());
+    let roughness = &environment.params.roughness;
+    let of = |index: usize| error_of(&compare(image, environment, index as u32, texels), mean);
+    let (sharp, rest): (Vec<usize>, Vec<usize>) = (1..roughness.len()).partition(|index| roughness[*index] < SHARP);
+    [of(0), largest(sharp.into_iter().map(of)), largest(rest.into_iter().map(of))]
+}
+
+fn default_rows(name: &str, image: &EnvironmentImage, settings: &Settings, tables: &mut Tables) -> Result<(), Failure> {
+    let options = defaults();
     let environment = bake(image, &options, &Silent)?;
     let params = &environment.params;
+    let reads = reads::random(image, &environment, (reads::LEAST_ALPHA, 1.0), READS_SEED, settings.pick(READS, 64));
+    let [sharp, rest] = reads::errors_of(&environment, &reads)
+        .map(|e| format!("{:.4} | {:.1} % | {:.4}", e.relative, e.worst * 100.0, e.of_mean));
+    tables.reads.row(format!("{name} | {} | {rest} | {sharp}", options.texture_bytes() / 1024));
     let rounding = params.measured.rounding.iter().copied().fold(0.0, f64::max);
-    let mean = luminance(image.mean());
-    let cell = |mip: u32| {
-        let error = error_of(&compare(image, &environment, mip, settings.pick(TEXELS, 4)), mean);
-        format!("{:.4} ({:.1} %)", error.rmse, error.worst * 100.0)
-    };
-    let cells: Vec<String> = (0..params.mips()).map(cell).collect();
-    rows.row(format!("{name} | {} | {rounding:.4} | {}", params.radiance_scale, cells.join(" | ")));
+    let cells = texel_errors(image, &environment, settings.pick(TEXELS, 4))
+        .map(|error| format!("{:.4} ({:.1} %)", error.rmse, error.worst * 100.0));
+    tables.texels.row(format!("{name} | {} | {rounding:.4} | {}", params.radiance_scale, cells.join(" | ")));
     Ok(())
 }
 
@@ -159,62 +198,44 @@ fn filter_rows(
     tables: &mut Tables,
     points: &mut Vec<Point>,
 ) -> Result<(), Failure> {
-    let baked = |levels, max_error| -> Result<(Environment, f64), Failure> {
-        let begin = cpu_seconds();
-        let environment = bake(image, &options(levels, max_error), &Silent)?;
-        Ok((environment, cpu_seconds() - begin))
-    };
-    let (chosen, _) = baked(1, 0.005)?;
     let texels = settings.pick(TEXELS, 4);
-    let compared: Vec<Vec<Compared>> = (0..9).map(|mip| compare(image, &chosen, mip, texels)).collect();
     let mean = luminance(image.mean());
-    let cells = |read: &dyn Fn(u32, &Compared) -> [f32; 4]| -> Vec<(f64, f64)> {
-        let of_mip = |(mip, all): (usize, &Vec<Compared>)| {
-            let stored: Vec<Compared> = all.iter().map(|c| Compared { stored: read(mip as u32, c), ..*c }).collect();
-            let error = error_of(&stored, mean);
-            (error.rmse, error.worst)
-        };
-        compared.iter().enumerate().map(of_mip).collect()
-    };
-    let of = |environment: &Environment| {
-        cells(&|mip, c| {
-            let (face, i, j) = c.texel;
-            environment.radiance_texel(mip, face, i, j)
-        })
-    };
-    let mut row = |setting: &str, ours: bool, cpu: f64, cells: &[(f64, f64)], energy: f64| {
-        let most = |pick: &dyn Fn(&(f64, f64)) -> f64| cells[3..].iter().map(pick).fold(0.0, f64::max);
-        let (rmse, worst) = (most(&|c| c.0), most(&|c| c.1));
+    let mut row = |setting: &str, ours: bool, cpu: f64, error: MeasuredTexels, energy: f64| {
+        let MeasuredTexels { rmse, worst } = error;
         let worst = worst * 100.0;
         tables.filters.row(format!("{name} | {setting} | {cpu:.2} | {rmse:.5} | {worst:.2} % | {energy:.1e}"));
         points.push(Point { ours, cpu, rmse });
     };
-    let mut mip_row = |setting: &str, cells: &[(f64, f64)]| {
-        let cells: Vec<String> =
-            cells.iter().map(|(rmse, worst)| format!("{rmse:.4} ({:.1} %)", worst * 100.0)).collect();
-        tables.mips.row(format!("{name} | {setting} | {}", cells.join(" | ")));
-    };
-    for max_error in [0.001, 0.005, 0.02] {
-        let (environment, cpu) = baked(1, max_error)?;
-        let cells = of(&environment);
-        row(&format!("{max_error}"), true, cpu, &cells, environment.params.measured.energy);
-        if max_error == 0.005 {
-            mip_row("ours", &cells);
-            let (with_levels, cpu) = baked(4, max_error)?;
-            row(&format!("{max_error}, K = 4"), true, cpu, &of(&with_levels), with_levels.params.measured.energy);
-        }
+    let ours = [
+        ("0.001", options(1, 0.001)),
+        ("0.005", options(1, 0.005)),
+        ("0.005, K = 4", options(4, 0.005)),
+        ("0.02", options(1, 0.02)),
+        ("default", defaults()),
+    ];
+    for (setting, options) in ours {
+        let begin = cpu_seconds();
+        let environment = bake(image, &options, &Silent)?;
+        let cpu = cpu_seconds() - begin;
+        let [_, _, error] = texel_errors(image, &environment, texels);
+        row(setting, true, cpu, error, environment.params.measured.energy);
     }
     for samples in [64, 1024] {
         let Some((cpu, faces)) = cmgen(path, samples, settings) else { continue };
-        let cells = cells(&|mip, c| {
-            let (face, i, j) = c.texel;
+        let error = |mip: u32| {
             let size = 256 >> mip;
-            // cmgen's world is ours turned by half a turn about y.
-            let d = texel_direction(face, i, j, size);
-            let (face, s, t) = face_of(glam::DVec3::new(-d.x, d.y, -d.z));
-            let cell = |c: f64| (0.5 * (c + 1.0) * f64::from(size)) as u32;
-            faces[mip as usize][face][(cell(t) * size + cell(s)) as usize]
-        });
+            let cube = Cube { kernel: Kernel::GgxNl, alpha: cmgen_alpha(mip), size };
+            let texel = |face: usize, i: u32, j: u32| {
+                // cmgen's world is ours turned by half a turn about y.
+                let d = texel_direction(face, i, j, size);
+                let (face, s, t) = face_of(glam::DVec3::new(-d.x, d.y, -d.z));
+                let cell = |c: f64| (0.5 * (c + 1.0) * f64::from(size)) as u32;
+                faces[mip as usize][face][(cell(t) * size + cell(s)) as usize]
+            };
+            error_of(&compare_cube(image, &cube, mip, texels, texel), mean)
+        };
+        let errors: Vec<MeasuredTexels> = (0..CMGEN_MIPS).map(error).collect();
+        let rough = (0..CMGEN_MIPS).filter(|mip| cmgen_alpha(*mip) >= SHARP).map(|mip| errors[mip as usize]);
         let sum: f64 = faces[0]
             .iter()
             .flat_map(|face| face.iter().enumerate())
@@ -223,12 +244,21 @@ fn filter_rows(
                 area * luminance([t[0], t[1], t[2]].map(f64::from))
             })
             .sum();
-        row(&format!("cmgen {samples}"), false, cpu, &cells, (sum / (4.0 * std::f64::consts::PI * mean) - 1.0).abs());
+        let energy = (sum / (4.0 * std::f64::consts::PI * mean) - 1.0).abs();
+        row(&format!("cmgen {samples}"), false, cpu, largest(rough), energy);
         if samples == 1024 {
-            mip_row("cmgen", &cells);
+            let cells: Vec<String> =
+                errors.iter().map(|e| format!("{:.4} ({:.1} %)", e.rmse, e.worst * 100.0)).collect();
+            tables.mips.row(format!("{name} | {}", cells.join(" | ")));
         }
     }
     Ok(())
+}
+
+/// GGX roughness α of a mip of cmgen's.
+fn cmgen_alpha(mip: u32) -> f64 {
+    let part = f64::from(mip) / f64::from(CMGEN_MIPS - 1);
+    (1.0 - (1.0 - part).sqrt()).powi(2)
 }
 
 /// Texels of the six faces of a mip.
@@ -261,7 +291,7 @@ fn cmgen(path: &Path, samples: u32, settings: &Settings) -> Option<(f64, Vec<Fac
         Some((0..r.len()).map(|k| [r[k], g[k], b[k], 0.0]).collect())
     };
     let mip = |mip| ["px", "nx", "py", "ny", "pz", "nz"].iter().map(|face| read(mip, face)).collect::<Option<Vec<_>>>();
-    let mips = (0..9).map(mip).collect::<Option<Vec<_>>>();
+    let mips = (0..CMGEN_MIPS as usize).map(mip).collect::<Option<Vec<_>>>();
     if !status.success() || mips.is_none() {
         settings.terminal.warn(&format!("environment: cmgen cannot be compared: {status}"));
     }
@@ -269,7 +299,7 @@ fn cmgen(path: &Path, samples: u32, settings: &Settings) -> Option<(f64, Vec<Fac
 }
 
 fn moment_rows(name: &str, image: &EnvironmentImage, settings: &Settings, rows: &mut Table) -> Result<(), Failure> {
-    let histogram = RadianceHistogram::new(image, Kernel::Ndf);
+    let histogram = RadianceHistogram::new(image, Kernel::GgxNl);
     let ours: Vec<Vec<f64>> = COUNTS.iter().map(|count| optimal(&histogram, *count).0).collect();
     let mut all = ours;
     for count in COUNTS {
@@ -282,8 +312,8 @@ fn moment_rows(name: &str, image: &EnvironmentImage, settings: &Settings, rows: 
     let errors: Vec<(Vec<f64>, f64)> = views
         .par_iter()
         .map(|(d, alpha)| {
-            let (with_levels, exact) = second_moments(image, Kernel::Ndf, *d, *alpha, &all);
-            let mean = filtered(image, Kernel::Ndf, *d, *alpha).luminance;
+            let (with_levels, exact) = second_moments(image, Kernel::GgxNl, *d, *alpha, &all);
+            let mean = filtered(image, Kernel::GgxNl, *d, *alpha).luminance;
             (with_levels.iter().map(|m| (m / exact - 1.0).abs()).collect(), (mean * mean / exact - 1.0).abs())
         })
         .collect();
@@ -295,11 +325,11 @@ fn moment_rows(name: &str, image: &EnvironmentImage, settings: &Settings, rows: 
     let best = |k: usize| (0..FLOORS.len()).map(|f| mean(n + k * FLOORS.len() + f)).fold(f64::INFINITY, f64::min);
     rows.row(format!("{name} | optimal | {one:.3} | {}", cells(&mean)));
     rows.row(format!("{name} | the paper's | {one:.3} | {}", cells(&best)));
-    let options = EnvironmentOptions { min_face_size: 1, measured_texels: 0, ..EnvironmentOptions::default() };
-    let environment = bake(image, &options, &Silent)?;
+    let environment = bake(image, &defaults(), &Silent)?;
     let (mut sum, mut count) = (0.0, 0.0);
-    for mip in 3..9 {
-        for c in compare(image, &environment, mip, settings.pick(TEXELS, 4)) {
+    let rough = (1..=environment.params.filtered()).filter(|k| environment.params.roughness[*k as usize] >= SHARP);
+    for index in rough {
+        for c in compare(image, &environment, index, settings.pick(TEXELS, 4)) {
             sum += (f64::from(c.stored[3]).powi(2) / c.exact.square - 1.0).abs();
             count += 1.0;
         }

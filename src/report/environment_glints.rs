@@ -250,7 +250,7 @@ fn baked(image: &EnvironmentImage, levels: u32, level_choice: LevelChoice) -> Re
         face_size: FACE_SIZE,
         levels: LevelCount::Exactly(levels),
         level_choice,
-        measured_texels: 0,
+        measured_reads: 0,
         ..EnvironmentOptions::default()
     };
     Ok(bake(image, &options, &Silent)?)

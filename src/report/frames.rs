@@ -224,7 +224,7 @@ mod with_viewer {
         let options = environment::EnvironmentOptions {
             levels: environment::LevelCount::Exactly(levels),
             face_size: settings.pick(256, 32),
-            measured_texels: 0,
+            measured_reads: 0,
             ..environment::EnvironmentOptions::default()
         };
         let baked = environment::bake(&image, &options, &Silent)?;

@@ -80,8 +80,8 @@ fn options_parameters_and_texels_that_differ_are_named() {
     assert!((found["mean"].as_f64().unwrap() - mean).abs() <= 1e-12 * mean);
     let [mip, layer, face, column, row, component] =
         [0, 1, 2, 3, 4, 5].map(|k| found["max_at"][k].as_u64().unwrap() as usize);
-    let edge = 8 >> mip;
-    let texels_before: usize = (0..mip).map(|mip| 6 * (8 >> mip) * (8 >> mip)).sum();
+    let edge = 4 >> mip;
+    let texels_before: usize = (0..mip).map(|mip| 4 * 6 * (4 >> mip) * (4 >> mip)).sum();
     let texel = texels_before + ((6 * layer + face) * edge + row) * edge + column;
     assert_eq!(apart[4 * texel + component], max);
 
@@ -188,8 +188,8 @@ fn environments_and_area_lights_have_pictures() {
     let picture = |name: &str| image::open(folder.path().join("plots").join(name)).unwrap().to_rgb8();
     info(folder.path(), &["sky.glintpack", "--plot", "plots", "-q"]).ok();
     let radiance = picture("0-sky-radiance.png");
-    // Six faces a row; mips of 8, 4 and 2 texels.
-    assert_eq!(radiance.dimensions(), (6 * 130 + 2, 3 * 130 + 2));
+    // Six faces a row; the mirror of 8 texels, and all of the eight roughnesses on faces of 4 and 2.
+    assert_eq!(radiance.dimensions(), (6 * 130 + 2, 9 * 130 + 2));
     // The sun stands above the horizon, to the right of −Z, which is the last face; the sky is blue, the sun is not.
     let mean = |face: u32, row: u32| {
         let at = |x: u32, y: u32| radiance.get_pixel(2 + 130 * face + x, 2 + 130 * row + y).0.map(u64::from);

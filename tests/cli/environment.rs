@@ -37,14 +37,14 @@ fn an_environment_verifies_and_is_described() {
     let case = sky(&SMALL);
     let flags = ["--levels", "8", "--coloured", "--json", "--report", "r.json", "--depfile", "out.d"];
     let done = case.bake(&flags).ok();
-    assert!(done.stderr.contains("sky: 16² × 6 × 2 mips") && done.stderr.contains("written"), "{}", done.stderr);
+    assert!(done.stderr.contains("sky: 16² × 6, 4 roughnesses") && done.stderr.contains("written"), "{}", done.stderr);
     case.verify();
     assert_eq!(fs::read_to_string(case.path("r.json")).unwrap(), done.stdout);
     assert!(fs::read_to_string(case.path("out.d")).unwrap().contains("sky.hdr"));
 
     let report = json(&done.stdout);
     let params = &report["environments"][0]["params"];
-    assert_eq!((&params["face_size"], &params["kernel"]), (&16.into(), &"ndf".into()));
+    assert_eq!((&params["face_size"], &params["kernel"]), (&16.into(), &"ggx-soft".into()));
     assert_eq!((params["levels"].as_array().unwrap().len(), &params["coloured"]), (8, &true.into()));
     assert!(params["measured"]["energy"].as_f64().unwrap() < 1e-3);
     assert!(params["radiance_scale"].as_f64().unwrap() > 1.0);
@@ -53,7 +53,9 @@ fn an_environment_verifies_and_is_described() {
     let text = case.info(&[]).ok().stdout;
     for part in [
         "ENIN \"sky\"",
-        "16 × 16 × 6 faces × 2 layers, 2 mips",
+        "R16G16B16A16_SFLOAT 16 × 16 × 6 faces ",
+        "8 × 8 × 6 faces × 8 layers ",
+        "reads        α ≥ 0.04: relative error ",
         "32 × 16 pixels, 0 of them negative",
         "levels       optimal, with colours: 0.00000 ",
     ] {
@@ -70,9 +72,13 @@ fn the_same_pack_on_any_number_of_threads_and_from_other_flags_another() {
         &["--levels", "1"][..],
         &["--levels", "auto", "--max-moment-error", "0.5"],
         &["--level-choice", "log-uniform", "--floor", "0.01"],
-        &["--kernel", "ggx-nl"],
+        // Its kink cuts a sun that is one pixel, an eighth of a radian wide.
+        &["--kernel", "ggx-nl", "--filter-error", "0.01"],
+        &["--kernel", "ndf"],
+        &["--roughnesses", "2"],
+        &["--max-error", "0.9"],
         &["--compress"],
-        &["--min-face-size", "4", "--measure", "0", "--max-error", "0.02"],
+        &["--min-face-size", "4", "--measure", "0", "--filter-error", "0.02"],
     ] {
         assert!(one != case.pack(flags), "{flags:?}");
         case.verify();
@@ -117,7 +123,11 @@ fn what_cannot_be_used_is_refused_with_its_reason() {
         (&["--min-face-size", "512"], 2),
         (&["--levels", "17"], 2),
         (&["--levels", "none"], 2),
+        (&["--roughnesses", "9"], 2),
+        (&["--filter-error", "0"], 2),
         (&["--max-error", "0"], 2),
+        (&["--max-error", "0.1", "--measure", "0"], 2),
+        (&["--face-size", "16", "--max-error", "0.0001"], 6),
         (&["--max-moment-error", "-1"], 2),
         (&["--floor", "0"], 2),
         (&["--level-choice", "log-uniform", "--levels", "auto"], 2),

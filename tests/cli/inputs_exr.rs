@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// Flags of an environment that is baked fast.
 const QUICK: [&str; 10] =
-    ["--face-size", "8", "--min-face-size", "4", "--levels", "1", "--max-error", "0.2", "--measure", "0"];
+    ["--face-size", "8", "--min-face-size", "4", "--levels", "1", "--filter-error", "0.2", "--measure", "0"];
 const ENCODING: Encoding =
     Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
 const MEMORY: u64 = 1 << 30;
@@ -614,7 +614,7 @@ face-size = 8
 min-face-size = 4
 levels = 1
 measure = 0
-max-error = 0.2
+filter-error = 0.2
 "#;
     fs::write(files.path("glint.toml"), project).unwrap();
     let done = bake(files.0.path(), &["build"]).ok();

@@ -187,7 +187,7 @@ fn three_scenes_take_a_quarter_and_keep_their_error() {
     let glints = ["ndf-maps", "--preset", "accurate", "--roughness", "0.05"];
     let highlights = ["area-light", "--anisotropic"];
     // Texels are what counts here: an error that is asked loosely takes less time and as many bytes.
-    let sky = ["environment", "--max-error", "0.2", "--measure", "0"];
+    let sky = ["environment", "--filter-error", "0.2", "--measure", "0"];
     let map = |name: &str, rest: &str| {
         let path = data.join(name);
         let title = path.file_stem().unwrap().to_str().unwrap().to_owned();

@@ -1,4 +1,4 @@
-//! Bakes an environment: levels, first mip by areas, filtered mips by their error bound, albedo, rounding, measurement.
+//! Bakes an environment: levels, the mirror by areas, filtered roughnesses by their error bound, albedo, rounding, measurement.
 //!
 //! Paper: section 5. Radiance and indicators have the same weights in every texel, so they are filtered together.
 
@@ -6,33 +6,34 @@ use super::albedo;
 use super::baked::Environment;
 use super::cube::{resampled_row, texel_solid_angle_sr};
 use super::image::{EnvironmentImage, luminance};
-use super::kernel::{Lobe, roughness_of_mips};
+use super::kernel::Lobe;
 use super::levels::{RadianceHistogram, fewest, log_uniform, optimal};
-use super::options::{EnvironmentOptions, LevelCount};
-use super::prefilter::filter_mip;
+use super::options::{EnvironmentOptions, LevelCount, OF_SHARP_READS};
+use super::prefilter::filter_cube;
 use super::quality;
-use super::rounding::{self, Mip, half_bits, radiance_scale, rounding_error, shared_exponent};
+use super::rounding::{self, Texels, half_bits, radiance_scale, rounding_error, shared_exponent};
 use super::source::{BASE_CHANNELS, Source};
 use super::tree::Tree;
 use crate::error::{BakeError, Result};
 use crate::progress::Progress;
-use glint_formats::environment::{EnvironmentParams, LevelChoice, MeasuredError};
+use glint_formats::environment::{EnvironmentParams, LevelChoice, MeasuredError, SHARP, roughness_of};
 use rayon::prelude::*;
 
-/// Rows of texels of the first mip that are held with all their channels.
+/// Rows of texels of the mirror that are held with all their channels.
 const ROWS_AT_ONCE: usize = 64;
 
-/// Bakes an environment of an image. Stages of `progress`: `filter`, in texels, and `measure`, in mips.
+/// Bakes an environment of an image. Stages of `progress`: `filter`, in texels, and `measure`, in roughnesses and a last step.
 ///
 /// # Errors
-/// Those of [`EnvironmentOptions::validate`]; [`BakeError::LimitExceeded`] when a mip misses the error that was asked.
+/// Those of [`EnvironmentOptions::validate`]; [`BakeError::LimitExceeded`] when the texels of a roughness or what is read miss the error that was asked.
 pub fn bake(image: &EnvironmentImage, options: &EnvironmentOptions, progress: &dyn Progress) -> Result<Environment> {
     options.validate()?;
     let (levels, second_moment) = choose_levels(image, options);
     let mut params = EnvironmentParams {
         face_size: options.face_size,
+        per_size: options.per_size,
         kernel: options.kernel,
-        roughness: roughness_of_mips(options.mips()),
+        roughness: roughness_of(options.face_size, options.filtered()),
         radiance_scale: 1.0,
         coloured: options.coloured,
         levels,
@@ -42,30 +43,33 @@ pub fn bake(image: &EnvironmentImage, options: &EnvironmentOptions, progress: &d
         source_height: image.height,
         negative_pixels: image.report.negative_pixels,
         mean_radiance: image.mean(),
+        filter_error: options.filter_error,
         max_error: options.max_error,
         measured: MeasuredError { second_moment, ..MeasuredError::default() },
     };
-    let mips = filtered_mips(image, options, &params, progress);
-    choose_scale(image, &mips, &mut params);
-    params.measured.energy = energy_error(image, &mips.light[0]);
-    let Mips { light, indicators, colours } = mips;
+    let cubes = filtered_cubes(image, options, &params, progress);
+    choose_scale(image, &cubes, &mut params);
+    params.measured.energy = energy_error(image, &cubes.light[0]);
+    let Cubes { light, indicators, colours } = cubes;
     let mut environment = Environment {
         uniform: params.uniform(),
         params,
+        mirror: Vec::new(),
         radiance: Vec::new(),
         indicators,
         colours,
         albedo: Vec::new(),
     };
-    for texels in light {
-        environment.radiance.extend(stored_radiance(&texels, environment.params.radiance_scale));
+    for (index, texels) in light.into_iter().enumerate() {
+        let stored = if index == 0 { &mut environment.mirror } else { &mut environment.radiance };
+        stored.extend(stored_radiance(&texels, environment.params.radiance_scale));
     }
     environment.albedo = albedo::table()
         .into_iter()
         .flat_map(|areas| [areas.scale, areas.bias, areas.reflecting, areas.whole])
         .map(half_bits)
         .collect();
-    quality::measure(image, options.measured_texels, &mut environment, progress);
+    quality::measure(image, options.measured_reads, &mut environment, progress);
     check_error(&environment)?;
     Ok(environment)
 }
@@ -85,9 +89,9 @@ fn choose_levels(image: &EnvironmentImage, options: &EnvironmentOptions) -> (Vec
     }
 }
 
-/// All mips, of which only radiance is yet to be rounded: its factor depends on all of them.
-struct Mips {
-    /// [`BASE_CHANNELS`] numbers a texel: red, green, blue, squared luminance. One entry a mip.
+/// The mirror and all roughnesses, of which only radiance is yet to be rounded: its factor depends on all of them.
+struct Cubes {
+    /// [`BASE_CHANNELS`] numbers a texel: red, green, blue, squared luminance. One entry a roughness, the mirror first.
     light: Vec<Vec<f64>>,
     /// Rounded indicators in the order of the pack.
     indicators: Vec<u16>,
@@ -96,104 +100,81 @@ struct Mips {
 }
 
 /// Sets the factor between stored and true radiance, and records what rounding then costs.
-fn choose_scale(image: &EnvironmentImage, mips: &Mips, params: &mut EnvironmentParams) {
+fn choose_scale(image: &EnvironmentImage, cubes: &Cubes, params: &mut EnvironmentParams) {
     let channels = BASE_CHANNELS;
-    let of = |(mip, texels)| Mip { texels, channels, max_error: quality::allowed_error(params, mip) };
-    let all: Vec<Mip<'_>> = mips.light.iter().map(Vec::as_slice).enumerate().map(of).collect();
+    let of = |(index, texels)| Texels { texels, channels, max_error: quality::allowed_error(params, index) };
+    let all: Vec<Texels<'_>> = cubes.light.iter().map(Vec::as_slice).enumerate().map(of).collect();
     let scale = radiance_scale(image, &all);
     let mean = luminance(image.mean());
-    let error = |mip: &Mip<'_>| if mean > 0.0 { rounding_error(mip, scale) / mean } else { 0.0 };
+    let error = |texels: &Texels<'_>| if mean > 0.0 { rounding_error(texels, scale) / mean } else { 0.0 };
     params.measured.rounding = all.iter().map(error).collect();
     params.radiance_scale = scale;
 }
 
-fn filtered_mips(
+fn filtered_cubes(
     image: &EnvironmentImage,
     options: &EnvironmentOptions,
     params: &EnvironmentParams,
     progress: &dyn Progress,
-) -> Mips {
-    let sizes: Vec<u32> = (0..params.mips()).map(|mip| params.face_size >> mip).collect();
-    let texels = sizes.iter().map(|size| 6 * u64::from(size * size)).sum();
+) -> Cubes {
+    let texels = (0..=params.filtered()).map(|index| 6 * u64::from(params.size(index)).pow(2)).sum();
     progress.begin("filter", texels);
-    let source = Source::new(image, &params.levels, params.coloured);
-    let mut mips = Mips { light: Vec::new(), indicators: Vec::new(), colours: Vec::new() };
-    let mut first = RoundedMip::new(params, sizes[0]);
-    for rows in (0..6 * sizes[0]).collect::<Vec<u32>>().chunks(ROWS_AT_ONCE) {
-        let texels: Vec<Vec<f64>> = rows.par_iter().map(|row| first_mip_row(image, sizes[0], *row, &source)).collect();
-        texels.iter().for_each(|row| first.add(params, source.channels, row));
-    }
-    mips.add(first);
+    let mut cubes = Cubes { light: vec![mirror(image, params)], indicators: Vec::new(), colours: Vec::new() };
     progress.advance(6 * u64::from(params.face_size).pow(2));
+    let source = Source::new(image, &params.levels, params.coloured);
     let tree = Tree::new(source.divided(options.division(image)));
-    for (size, alpha) in sizes.iter().zip(&params.roughness).skip(1) {
-        let lobe = Lobe::new(params.kernel, *alpha);
-        let mut mip = RoundedMip::new(params, *size);
-        mip.add(params, source.channels, &filter_mip(&tree, &lobe, *size, options.max_error, progress));
-        mips.add(mip);
+    for index in 1..=params.filtered() {
+        let lobe = Lobe::new(params.kernel, params.roughness[index as usize]);
+        let texels = filter_cube(&tree, &lobe, params.size(index), options.filter_error, progress);
+        let coloured = params.coloured && params.place(index).1 == params.colour_layer();
+        cubes.add(params, source.channels, coloured, &texels);
     }
     progress.end();
-    mips
+    cubes
 }
 
-/// A row of means over texels of the first mip, which is the source itself seen through a cube.
-fn first_mip_row(image: &EnvironmentImage, size: u32, row: u32, source: &Source<'_>) -> Vec<f64> {
-    resampled_row(image, size, row, source.channels, |x, y, out| source.values(x, y, out))
+/// Means over the texels of the source seen through a cube, [`BASE_CHANNELS`] numbers each.
+fn mirror(image: &EnvironmentImage, params: &EnvironmentParams) -> Vec<f64> {
+    // Levels are of no use where facets are not told apart.
+    let source = Source::new(image, &params.levels[..1], false);
+    let row = |row| resampled_row(image, params.face_size, row, source.channels, |x, y, out| source.values(x, y, out));
+    let rows: Vec<u32> = (0..6 * params.face_size).collect();
+    rows.chunks(ROWS_AT_ONCE)
+        .flat_map(|rows| rows.par_iter().flat_map_iter(|&at| row(at)).collect::<Vec<f64>>())
+        .collect()
 }
 
-impl Mips {
-    fn add(&mut self, mip: RoundedMip) {
-        self.light.push(mip.light);
-        self.indicators.extend(mip.indicators);
-        self.colours.extend(mip.colours);
-    }
-}
-
-/// One mip, texel after texel.
-struct RoundedMip {
-    /// Texels of the whole mip.
-    count: usize,
-    light: Vec<f64>,
-    indicators: Vec<u16>,
-    colours: Vec<u32>,
-}
-
-impl RoundedMip {
-    fn new(params: &EnvironmentParams, size: u32) -> RoundedMip {
-        let count = 6 * (size as usize).pow(2);
-        let colours = if params.coloured { (params.levels.len() - 1) * count } else { 0 };
-        RoundedMip {
-            count,
-            light: Vec::with_capacity(count * BASE_CHANNELS),
-            indicators: vec![0; params.indicator_layers() as usize * count * 4],
-            colours: vec![0; colours],
-        }
-    }
-
-    /// Adds the next texels, of `channels` numbers each.
-    fn add(&mut self, params: &EnvironmentParams, channels: usize, texels: &[f64]) {
+impl Cubes {
+    /// Adds a roughness, whose texels have `channels` numbers each; with its colours where it is one that has them.
+    fn add(&mut self, params: &EnvironmentParams, channels: usize, coloured: bool, texels: &[f64]) {
         let more = params.levels.len() - 1;
-        for texel in texels.chunks_exact(channels) {
-            let k = self.light.len() / BASE_CHANNELS;
-            self.light.extend(&texel[..BASE_CHANNELS]);
+        let count = texels.len() / channels;
+        let (first, first_colour) = (self.indicators.len(), self.colours.len());
+        self.indicators.resize(first + params.indicator_layers() as usize * count * 4, 0);
+        self.colours.resize(first_colour + if coloured { more * count } else { 0 }, 0);
+        let mut light = Vec::with_capacity(count * BASE_CHANNELS);
+        for (k, texel) in texels.chunks_exact(channels).enumerate() {
+            light.extend(&texel[..BASE_CHANNELS]);
             let shares = &texel[BASE_CHANNELS..BASE_CHANNELS + more];
             // Blocks taken as points may give a few 1e-4 more than the whole.
             let whole = shares.iter().sum::<f64>().max(1.0);
             let shares: Vec<f64> = shares.iter().map(|share| share.max(0.0) / whole).collect();
             for (i, bits) in rounding::indicators(&shares).into_iter().enumerate() {
-                self.indicators[((i / 4) * self.count + k) * 4 + i % 4] = bits;
+                self.indicators[first + ((i / 4) * count + k) * 4 + i % 4] = bits;
             }
-            if params.coloured {
+            if coloured {
                 for i in 0..more {
                     let light = &texel[BASE_CHANNELS + more + 3 * i..][..3];
-                    self.colours[i * self.count + k] = shared_exponent(unit_luminance([light[0], light[1], light[2]]));
+                    self.colours[first_colour + i * count + k] =
+                        shared_exponent(unit_luminance([light[0], light[1], light[2]]));
                 }
             }
         }
+        self.light.push(light);
     }
 }
 
-/// |luminance over all texels of the first mip by solid angle, over the source's − 1|.
+/// |luminance over all texels of the mirror by solid angle, over the source's − 1|.
 fn energy_error(image: &EnvironmentImage, texels: &[f64]) -> f64 {
     let size = ((texels.len() / BASE_CHANNELS / 6) as f64).sqrt() as u32;
     let whole = luminance(image.mean()) * 4.0 * std::f64::consts::PI;
@@ -221,13 +202,24 @@ fn unit_luminance(rgb: [f64; 3]) -> [f64; 3] {
 
 fn check_error(environment: &Environment) -> Result<()> {
     let params = &environment.params;
-    for (mip, measured) in params.measured.mips.iter().enumerate().skip(1) {
-        let most = quality::allowed_error(params, mip).hypot(params.measured.rounding[mip]);
+    for (index, measured) in params.measured.texels.iter().enumerate().skip(1) {
+        let most = quality::allowed_error(params, index).hypot(params.measured.rounding[index]);
         if measured.rmse > most {
             return Err(BakeError::LimitExceeded(format!(
-                "mip {mip} (α {:.4}): expected a root mean square error of {most:.5} of the mean at most, found {:.5}; \
-                 allow a larger error",
-                params.roughness[mip], measured.rmse
+                "roughness {index} (α {:.4}): expected texels with a root mean square error of {most:.5} of the mean at most, \
+                 found {:.5}; allow a larger --filter-error",
+                params.roughness[index], measured.rmse
+            )));
+        }
+    }
+    let Some(max_error) = params.max_error else { return Ok(()) };
+    let allowed = [(OF_SHARP_READS * max_error, "below"), (max_error, "at least")];
+    for (reads, (most, side)) in params.measured.reads.iter().zip(allowed) {
+        if reads.relative > most {
+            return Err(BakeError::LimitExceeded(format!(
+                "expected look-ups with a relative error of {most:.4} at most, root mean square, where roughness is {side} {SHARP}, \
+                 found {:.4}; give more --roughnesses, a larger --face-size or --min-face-size, or allow a larger --max-error",
+                reads.relative
             )));
         }
     }
@@ -259,7 +251,16 @@ mod tests {
 
     fn options(face_size: u32, min_face_size: u32) -> EnvironmentOptions {
         let levels = LevelCount::Exactly(1);
-        EnvironmentOptions { face_size, min_face_size, levels, measured_texels: 0, ..EnvironmentOptions::default() }
+        let per_size = 1;
+        let measured_reads = 0;
+        EnvironmentOptions {
+            face_size,
+            min_face_size,
+            per_size,
+            levels,
+            measured_reads,
+            ..EnvironmentOptions::default()
+        }
     }
 
     /// A sun of a few texels decides what rounding costs, and the factor of stored radiance follows it.
@@ -271,13 +272,13 @@ mod tests {
             pixels[37 * 256 + 120] = [range, 0.9 * range, 0.8 * range];
             let image = EnvironmentImage::new(256, 128, pixels).unwrap();
             let params = bake(&image, &options, &Silent).unwrap().params;
-            let exact = filtered_mips(&image, &options, &params, &Silent);
+            let exact = filtered_cubes(&image, &options, &params, &Silent);
             let scale = params.radiance_scale;
             assert_eq!(scale.log2().fract() != 0.0, chosen, "{range}: {scale}");
             assert_eq!(f64::from(scale as f32), scale);
             let mean = luminance(image.mean());
-            let rounding = |scale: f64, mip: usize| {
-                let texels = exact.light[mip].chunks_exact(BASE_CHANNELS);
+            let rounding = |scale: f64, index: usize| {
+                let texels = exact.light[index].chunks_exact(BASE_CHANNELS);
                 let count = texels.len() as f64;
                 let squares = texels.map(|texel| {
                     let stored = |value: f64| f16::from_f32((value / scale) as f32).to_f64() * scale;
@@ -285,20 +286,20 @@ mod tests {
                 });
                 (squares.sum::<f64>() / count).sqrt() / mean
             };
-            for mip in 0..3 {
-                let recorded = params.measured.rounding[mip];
-                let (found, plain) = (rounding(scale, mip), rounding(scale.log2().floor().exp2(), mip));
-                assert!((recorded / found - 1.0).abs() < 0.02, "{range} mip {mip}: {recorded} {found}");
-                assert!(recorded <= 0.02, "{range} mip {mip}: {recorded}");
-                if chosen && mip == 0 {
-                    assert!(found < 0.5 * plain, "{range} mip {mip}: {found} {plain}");
+            for index in 0..3 {
+                let recorded = params.measured.rounding[index];
+                let (found, plain) = (rounding(scale, index), rounding(scale.log2().floor().exp2(), index));
+                assert!((recorded / found - 1.0).abs() < 0.02, "{range} roughness {index}: {recorded} {found}");
+                assert!(recorded <= 0.02, "{range} roughness {index}: {recorded}");
+                if chosen && index == 0 {
+                    assert!(found < 0.5 * plain, "{range} roughness {index}: {found} {plain}");
                 }
             }
         }
     }
 
     #[test]
-    fn the_first_mip_is_the_mean_over_every_texel() {
+    fn the_mirror_is_the_mean_over_every_texel() {
         // Pixels that fit no texel, some of them a million times as bright.
         let (image, size) = (sunny(101, 51, 1e6), 16);
         let row = |row| {

@@ -3,14 +3,16 @@
 use glint_formats::environment::{EnvironmentParams, EnvironmentUniform};
 use half::f16;
 
-/// A baked environment. Textures are in the order of the pack: mip, layer, face, row, column.
+/// A baked environment. Textures are in the order of the pack: mip, layer, face, row, column, which is that of rising roughness.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Environment {
     /// Parameters.
     pub params: EnvironmentParams,
     /// What a shader binds of them.
     pub uniform: EnvironmentUniform,
-    /// Prefiltered radiance and root mean square luminance over the scale, RGBA, as half floats.
+    /// The mirror and its root mean square luminance over the scale, RGBA, as half floats.
+    pub mirror: Vec<u16>,
+    /// Filtered radiance and root mean square luminance over the scale, RGBA, as half floats.
     pub radiance: Vec<u16>,
     /// Indicators of levels from 1 on, four a layer, as half floats; empty with one level.
     pub indicators: Vec<u16>,
@@ -21,39 +23,40 @@ pub struct Environment {
 }
 
 impl Environment {
-    /// Edge of a face of a mip.
-    pub fn size(&self, mip: u32) -> u32 {
-        self.params.face_size >> mip
+    /// Texels of all filtered roughnesses before `index`, 1 or more, and of it.
+    fn texels(&self, index: u32) -> (usize, usize) {
+        let of = |index: u32| 6 * (self.params.size(index) as usize).pow(2);
+        ((1..index).map(of).sum(), of(index))
     }
 
-    /// Texels of a layer in all mips before `mip`, and in `mip`.
-    fn texels(&self, mip: u32) -> (usize, usize) {
-        let of = |mip: u32| 6 * (self.size(mip) as usize).pow(2);
-        ((0..mip).map(of).sum(), of(mip))
+    /// Texel of a face of roughness `index`.
+    fn texel(&self, index: u32, face: usize, i: u32, j: u32) -> usize {
+        let size = self.params.size(index) as usize;
+        (face * size + j as usize) * size + i as usize
     }
 
-    /// Index of a texel of a texture of `layers` layers.
-    fn index(&self, layers: usize, layer: usize, mip: u32, face: usize, i: u32, j: u32) -> usize {
-        let (before, texels) = self.texels(mip);
-        let size = self.size(mip) as usize;
-        before * layers + layer * texels + (face * size + j as usize) * size + i as usize
+    /// Radiance of a texel, R, G, B and root mean square luminance, as a GPU reads it times the scale. Index 0 is the mirror, others are
+    /// filtered roughnesses.
+    pub fn radiance_texel(&self, index: u32, face: usize, i: u32, j: u32) -> [f32; 4] {
+        let texel = self.texel(index, face, i, j);
+        let (texels, at) =
+            if index == 0 { (&self.mirror, texel) } else { (&self.radiance, self.texels(index).0 + texel) };
+        [0, 1, 2, 3].map(|c| self.uniform.radiance_scale * f16::from_bits(texels[4 * at + c]).to_f32())
     }
 
-    /// Radiance of a texel, R, G, B and root mean square luminance, as a GPU reads it times the scale.
-    pub fn radiance_texel(&self, mip: u32, face: usize, i: u32, j: u32) -> [f32; 4] {
-        let texel = self.index(1, 0, mip, face, i, j);
-        [0, 1, 2, 3].map(|c| self.uniform.radiance_scale * f16::from_bits(self.radiance[4 * texel + c]).to_f32())
+    /// Indicators of levels 4 layer + 1 to 4 layer + 4 of a texel of filtered roughness `index`.
+    pub fn indicator_texel(&self, layer: usize, index: u32, face: usize, i: u32, j: u32) -> [f32; 4] {
+        let (before, texels) = self.texels(index);
+        let at = before * self.params.indicator_layers() as usize + layer * texels + self.texel(index, face, i, j);
+        [0, 1, 2, 3].map(|c| f16::from_bits(self.indicators[4 * at + c]).to_f32())
     }
 
-    /// Indicators of levels 4 layer + 1 to 4 layer + 4 of a texel.
-    pub fn indicator_texel(&self, layer: usize, mip: u32, face: usize, i: u32, j: u32) -> [f32; 4] {
-        let texel = self.index(self.params.indicator_layers() as usize, layer, mip, face, i, j);
-        [0, 1, 2, 3].map(|c| f16::from_bits(self.indicators[4 * texel + c]).to_f32())
-    }
-
-    /// Colour of level `layer` + 1 of a texel.
+    /// Colour of level `layer` + 1 of a texel of a mip.
     pub fn colour_texel(&self, layer: usize, mip: u32, face: usize, i: u32, j: u32) -> [f32; 3] {
-        from_shared_exponent(self.colours[self.index(self.params.levels.len() - 1, layer, mip, face, i, j)])
+        let index = 1 + mip * self.params.per_size;
+        let texels = self.texels(index).1;
+        let before = self.texels(index).0 / self.params.per_size as usize * (self.params.levels.len() - 1);
+        from_shared_exponent(self.colours[before + layer * texels + self.texel(index, face, i, j)])
     }
 
     /// Entry of the albedo table.

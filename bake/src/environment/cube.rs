@@ -1,4 +1,4 @@
-//! Cube faces and texels, and the step from the equirectangular source to the first mip by exact areas.
+//! Cube faces and texels, and the step from the equirectangular source to the mirror by exact areas.
 //!
 //! Faces are +X −X +Y −Y +Z −Z in the orientation of Vulkan, Direct3D and WebGPU: the direction through (s, t) of face
 //! +Z, each from −1 to 1, is (s, −t, 1), and so on. Tools that take the nearest pixel lose some per cent of a sun.

@@ -9,7 +9,7 @@
 //!   reflection.
 
 use super::baked::Environment;
-use super::lookup::{albedo_at, colour_at, indicators_at, radiance_at};
+use super::lookup::{albedo_at, colour_at, indicators_at, mirror_at, radiance_at};
 use crate::counting::eval::{count_value, multinomial};
 use glam::Vec3;
 use glint_formats::environment::MAX_LEVELS;
@@ -42,16 +42,66 @@ pub struct Chances {
     pub std_factor: f32,
     /// Where the smooth reflection looks, unit length.
     pub mirror: Vec3,
-    /// Mip of the roughness, 0 to the last.
-    pub mip: f32,
+    /// Mip of the colours of levels, 0 to the last.
+    pub colour_mip: f32,
 }
 
-/// Mip of roughness α, between 0 and the last: the inverse of what the bake gives each mip.
-pub fn environment_mip(environment: &Environment, alpha: f32) -> f32 {
-    let mips = environment.params.mips();
-    let perceptual = alpha.clamp(0.0, 1.0).sqrt();
-    let mip = perceptual * (2.0 - perceptual) * (mips.max(2) - 1) as f32;
-    mip.min((mips - 1) as f32)
+/// The two filtered roughnesses that a roughness lies between, and the shares of what it reads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Roughness {
+    /// Mip and layer of the sharper one.
+    pub low: [u32; 2],
+    /// Mip and layer of the rougher one.
+    pub high: [u32; 2],
+    /// Share of the rougher one in what is filtered.
+    pub share: f32,
+    /// Share of the mirror in all; above 0 below the least filtered roughness.
+    pub mirror: f32,
+    /// Mip of the colours of levels, 0 to the last.
+    pub colour_mip: f32,
+}
+
+/// Mip and layer of filtered roughness `index`, 0 for the least.
+fn environment_place(environment: &Environment, index: f32) -> [u32; 2] {
+    let per_size = environment.uniform.per_size;
+    let mip = ((index + 0.5) / per_size).floor();
+    [mip as u32, (index - mip * per_size) as u32]
+}
+
+/// Where roughness α is read: the inverse of what the bake gives each roughness.
+pub fn environment_roughness(environment: &Environment, alpha: f32) -> Roughness {
+    let uniform = &environment.uniform;
+    let last = uniform.roughnesses - 1.0;
+    let rough = 1.0 - alpha.clamp(uniform.first_alpha, 1.0).log2() * uniform.inverse_log;
+    let index = (last * rough * (1.0 + uniform.bend * (1.0 - rough))).clamp(0.0, last);
+    let low = index.floor();
+    let colours = (index - (0.5 * uniform.per_size).floor()) / uniform.per_size;
+    Roughness {
+        low: environment_place(environment, low),
+        high: environment_place(environment, (low + 1.0).min(last)),
+        share: index - low,
+        mirror: 1.0 - (alpha / uniform.first_alpha).clamp(0.0, 1.0),
+        colour_mip: colours.clamp(0.0, uniform.roughnesses / uniform.per_size - 1.0),
+    }
+}
+
+/// Filtered radiance of a roughness around a direction, without the mirror: R, G, B and root mean square luminance.
+pub fn environment_filtered(environment: &Environment, direction: Vec3, roughness: &Roughness) -> [f32; 4] {
+    let ([low_mip, low_layer], [high_mip, high_layer]) = (roughness.low, roughness.high);
+    let low = radiance_at(environment, low_layer, direction, low_mip);
+    let high = radiance_at(environment, high_layer, direction, high_mip);
+    [0, 1, 2, 3].map(|c| (1.0 - roughness.share) * low[c] + roughness.share * high[c])
+}
+
+/// Radiance of a roughness around a direction: R, G, B and root mean square luminance; `filtered` is [`environment_filtered`].
+pub fn environment_radiance(
+    environment: &Environment,
+    direction: Vec3,
+    roughness: &Roughness,
+    filtered: [f32; 4],
+) -> [f32; 4] {
+    let mirror = mirror_at(environment, direction);
+    [0, 1, 2, 3].map(|c| (1.0 - roughness.mirror) * filtered[c] + roughness.mirror * mirror[c])
 }
 
 /// Scale and bias of F₀, visible reflecting area and whole facet area at a view cosine and roughness.
@@ -64,7 +114,9 @@ pub fn environment_smooth(environment: &Environment, surface: &Surface) -> [f32;
     let cos_o = surface.normal.dot(surface.view);
     let mirror = 2.0 * cos_o * surface.normal - surface.view;
     let [scale, bias, ..] = environment_areas(environment, cos_o, surface.alpha);
-    let radiance = radiance_at(environment, mirror, environment_mip(environment, surface.alpha));
+    let roughness = environment_roughness(environment, surface.alpha);
+    let filtered = environment_filtered(environment, mirror, &roughness);
+    let radiance = environment_radiance(environment, mirror, &roughness, filtered);
     [0, 1, 2].map(|c| (surface.f0 * scale + bias) * radiance[c])
 }
 
@@ -78,9 +130,23 @@ fn levels_dot(x: &[f32; MAX_LEVELS], y: &[f32; MAX_LEVELS], count: usize) -> f32
     x[..count].iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
+/// Shares of levels 4 `layer` + 1 to 4 `layer` + 4 of a roughness around a direction; of the least filtered one below it.
+fn environment_indicators(environment: &Environment, layer: u32, direction: Vec3, roughness: &Roughness) -> [f32; 4] {
+    let layers = environment.params.indicator_layers();
+    let ([low_mip, low_layer], [high_mip, high_layer]) = (roughness.low, roughness.high);
+    let low = indicators_at(environment, low_layer * layers + layer, direction, low_mip);
+    let high = indicators_at(environment, high_layer * layers + layer, direction, high_mip);
+    [0, 1, 2, 3].map(|c| (1.0 - roughness.share) * low[c] + roughness.share * high[c])
+}
+
 /// Probabilities that a facet reflects each level (Eq. 15 and 21), with `visible` = E_D / D_H. Level 0 also takes the
 /// facets that reflect nothing.
-pub fn level_probabilities(environment: &Environment, direction: Vec3, mip: f32, visible: f32) -> [f32; MAX_LEVELS] {
+pub fn level_probabilities(
+    environment: &Environment,
+    direction: Vec3,
+    roughness: &Roughness,
+    visible: f32,
+) -> [f32; MAX_LEVELS] {
     let count = environment.params.levels.len();
     let mut p = [0.0; MAX_LEVELS];
     if count == 1 {
@@ -88,9 +154,9 @@ pub fn level_probabilities(environment: &Environment, direction: Vec3, mip: f32,
         return p;
     }
     // Component c of layer l is level 4 l + c + 1, so lists are shifted by one.
-    for layer in 0..environment.params.indicator_layers() as usize {
-        let indicators = indicators_at(environment, layer, direction, mip);
-        for (p, indicator) in p[..count].iter_mut().skip(4 * layer + 1).zip(indicators) {
+    for layer in 0..environment.params.indicator_layers() {
+        let indicators = environment_indicators(environment, layer, direction, roughness);
+        for (p, indicator) in p[..count].iter_mut().skip(4 * layer as usize + 1).zip(indicators) {
             *p = indicator * visible;
         }
     }
@@ -118,23 +184,25 @@ pub fn std_factor(moments: [f32; 2], square: f32, visible: f32) -> f32 {
 pub fn chances(environment: &Environment, surface: &Surface) -> Chances {
     let cos_o = surface.normal.dot(surface.view);
     let mirror = 2.0 * cos_o * surface.normal - surface.view;
-    let mip = environment_mip(environment, surface.alpha);
+    let roughness = environment_roughness(environment, surface.alpha);
     let [scale, bias, reflecting, whole] = environment_areas(environment, cos_o, surface.alpha);
-    let radiance = radiance_at(environment, mirror, mip);
+    let filtered = environment_filtered(environment, mirror, &roughness);
+    let radiance = environment_radiance(environment, mirror, &roughness, filtered);
     let visible = (reflecting / whole).min(1.0);
-    let p = level_probabilities(environment, mirror, mip, visible);
+    let p = level_probabilities(environment, mirror, &roughness, visible);
     let moments = facet_moments(environment, &p);
-    let std_factor = std_factor(moments, radiance[3] * radiance[3], visible);
+    // Levels are filtered, so the moment beside them is that of what is filtered.
+    let std_factor = std_factor(moments, filtered[3] * filtered[3], visible);
     let smooth_radiance = [0, 1, 2].map(|c| (surface.f0 * scale + bias) * radiance[c]);
-    Chances { smooth_radiance, p, moments, std_factor, mirror, mip }
+    Chances { smooth_radiance, p, moments, std_factor, mirror, colour_mip: roughness.colour_mip }
 }
 
 /// Drawn over expected light, channel by channel.
 fn coloured_ratios(environment: &Environment, chances: &Chances, facets: f32, counts: &[f32; MAX_LEVELS]) -> [f32; 3] {
     let (mut drawn, mut expected) = ([0.0; 3], [0.0; 3]);
     for k in 1..environment.params.levels.len() {
-        let colour =
-            colour_at(environment, k - 1, chances.mirror, chances.mip).map(|c| c * environment.uniform.level[k]);
+        let colour = colour_at(environment, k as u32 - 1, chances.mirror, chances.colour_mip)
+            .map(|c| c * environment.uniform.level[k]);
         for c in 0..3 {
             drawn[c] += colour[c] * counts[k];
             expected[c] += colour[c] * (chances.p[k] * facets);

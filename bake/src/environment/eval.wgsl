@@ -3,9 +3,10 @@
 // Twin of glint-bake-core environment/eval.rs, where deviations from the paper are derived: the variance of
 // glints is that of the filtered second moment, and levels may have colours.
 //
-// Directions are unit vectors in the environment's frame. Accessors that the including program defines; `mip` is
-// glint_environment_mip, and cubes are filtered between texels, across edges and between mips:
-//   fn glint_environment_radiance_at(direction: vec3f, mip: f32) -> vec4f                section ENRA times radiance_scale: RGB, root mean square luminance
+// Directions are unit vectors in the environment's frame. Accessors that the including program defines; cubes are filtered between
+// texels and across edges, colours between mips as well, which are whole numbers elsewhere:
+//   fn glint_environment_mirror_at(direction: vec3f) -> vec4f                            section ENMI times radiance_scale: RGB, root mean square luminance
+//   fn glint_environment_radiance_at(layer: u32, direction: vec3f, mip: f32) -> vec4f    section ENRA, the same
 //   fn glint_environment_indicators_at(layer: u32, direction: vec3f, mip: f32) -> vec4f  section ENIN; called for levels > 1
 //   fn glint_environment_colour_at(layer: u32, direction: vec3f, mip: f32) -> vec3f      section ENCO; called if coloured
 //   fn glint_environment_albedo_at(place: vec2f) -> vec4f                                section ENAL, clamped to its edge, place 0 to 1
@@ -19,9 +20,15 @@ struct GlintEnvironment {
     // 1 for the levels that there are, else 0.
     present: GlintLevels,
     levels: u32,
-    mips: u32,
     coloured: u32,
     radiance_scale: f32,
+    // Filtered roughnesses, and how many each face size has.
+    roughnesses: f32,
+    per_size: f32,
+    // The least of them; 1 over its logarithm to base 2, 0 where it is 1; how the others are spread.
+    first_alpha: f32,
+    inverse_log: f32,
+    bend: f32,
 }
 
 // A point of a glittering surface as a pixel sees it, in the environment's frame.
@@ -48,14 +55,56 @@ struct GlintChances {
     std_factor: f32,
     // Where the smooth reflection looks.
     mirror: vec3f,
-    mip: f32,
+    // Mip of the colours of levels.
+    colour_mip: f32,
 }
 
-// Mip of a roughness, 0 to mips - 1.
-fn glint_environment_mip(environment: GlintEnvironment, alpha: f32) -> f32 {
-    let perceptual = sqrt(clamp(alpha, 0.0, 1.0));
-    let mip = perceptual * (2.0 - perceptual) * f32(max(environment.mips, 2u) - 1u);
-    return min(mip, f32(environment.mips - 1u));
+// The two filtered roughnesses that a roughness lies between, and the shares of what it reads.
+struct GlintEnvironmentRoughness {
+    // Mip and layer of each.
+    low: vec2f,
+    high: vec2f,
+    // Share of the rougher one in what is filtered.
+    share: f32,
+    // Share of the mirror in all; above 0 below the least filtered roughness.
+    mirror: f32,
+    // Mip of the colours of levels.
+    colour_mip: f32,
+}
+
+// Mip and layer of filtered roughness `index`, 0 for the least.
+fn glint_environment_place(environment: GlintEnvironment, index: f32) -> vec2f {
+    let mip = floor((index + 0.5) / environment.per_size);
+    return vec2f(mip, index - mip * environment.per_size);
+}
+
+// Where a roughness is read: the inverse of what the bake gives each.
+fn glint_environment_roughness(environment: GlintEnvironment, alpha: f32) -> GlintEnvironmentRoughness {
+    let last = environment.roughnesses - 1.0;
+    let rough = 1.0 - log2(clamp(alpha, environment.first_alpha, 1.0)) * environment.inverse_log;
+    let index = clamp(last * rough * (1.0 + environment.bend * (1.0 - rough)), 0.0, last);
+    let low = floor(index);
+    let colours = (index - floor(0.5 * environment.per_size)) / environment.per_size;
+    return GlintEnvironmentRoughness(
+        glint_environment_place(environment, low),
+        glint_environment_place(environment, min(low + 1.0, last)),
+        index - low,
+        1.0 - clamp(alpha / environment.first_alpha, 0.0, 1.0),
+        clamp(colours, 0.0, environment.roughnesses / environment.per_size - 1.0),
+    );
+}
+
+// Filtered radiance of a roughness, without the mirror: RGB and root mean square luminance. All is read without branches: what
+// two pixels of a group need differs.
+fn glint_environment_filtered(direction: vec3f, roughness: GlintEnvironmentRoughness) -> vec4f {
+    let low = glint_environment_radiance_at(u32(roughness.low.y), direction, roughness.low.x);
+    let high = glint_environment_radiance_at(u32(roughness.high.y), direction, roughness.high.x);
+    return (1.0 - roughness.share) * low + roughness.share * high;
+}
+
+// Radiance of a roughness: RGB and root mean square luminance; `filtered` is glint_environment_filtered.
+fn glint_environment_radiance(direction: vec3f, roughness: GlintEnvironmentRoughness, filtered: vec4f) -> vec4f {
+    return (1.0 - roughness.mirror) * filtered + roughness.mirror * glint_environment_mirror_at(direction);
 }
 
 // Scale and bias of f0, visible reflecting area and whole facet area.
@@ -68,7 +117,9 @@ fn glint_environment_smooth(environment: GlintEnvironment, surface: GlintSurface
     let cos_o = dot(surface.normal, surface.view);
     let mirror = 2.0 * cos_o * surface.normal - surface.view;
     let areas = glint_environment_areas(cos_o, surface.alpha);
-    let radiance = glint_environment_radiance_at(mirror, glint_environment_mip(environment, surface.alpha));
+    let roughness = glint_environment_roughness(environment, surface.alpha);
+    let filtered = glint_environment_filtered(mirror, roughness);
+    let radiance = glint_environment_radiance(mirror, roughness, filtered);
     return (surface.f0 * areas.x + areas.y) * radiance.rgb;
 }
 
@@ -95,9 +146,28 @@ fn glint_levels_dot(x: GlintLevels, y: GlintLevels, count: u32) -> f32 {
     return sum;
 }
 
+// Shares of levels 4 `layer` + 1 to 4 `layer` + 4 of a roughness; of the least filtered one below it.
+fn glint_environment_indicators(
+    environment: GlintEnvironment,
+    layer: u32,
+    direction: vec3f,
+    roughness: GlintEnvironmentRoughness,
+) -> vec4f {
+    let layers = (environment.levels + 2u) / 4u;
+    let places = vec2u(vec2f(roughness.low.y, roughness.high.y)) * layers + layer;
+    let low = glint_environment_indicators_at(places.x, direction, roughness.low.x);
+    let high = glint_environment_indicators_at(places.y, direction, roughness.high.x);
+    return (1.0 - roughness.share) * low + roughness.share * high;
+}
+
 // Probabilities that a facet reflects each level (Eq. 15 and 21), with `visible` = E_D / D_H. Level 0 also takes the facets that
 // reflect nothing.
-fn glint_level_probabilities(environment: GlintEnvironment, direction: vec3f, mip: f32, visible: f32) -> GlintLevels {
+fn glint_level_probabilities(
+    environment: GlintEnvironment,
+    direction: vec3f,
+    roughness: GlintEnvironmentRoughness,
+    visible: f32,
+) -> GlintLevels {
     let count = environment.levels;
     var p = GlintLevels(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0));
     if count == 1u {
@@ -105,22 +175,22 @@ fn glint_level_probabilities(environment: GlintEnvironment, direction: vec3f, mi
         return p;
     }
     // Component c of layer l is level 4 l + c + 1, so lists are shifted by one.
-    let first = glint_environment_indicators_at(0u, direction, mip) * visible;
+    let first = glint_environment_indicators(environment, 0u, direction, roughness) * visible;
     p.a = vec4f(0.0, first.xyz) * environment.present.a;
     if count > 4u {
         var second = vec4f(0.0);
         if count > 5u {
-            second = glint_environment_indicators_at(1u, direction, mip) * visible;
+            second = glint_environment_indicators(environment, 1u, direction, roughness) * visible;
         }
         p.b = vec4f(first.w, second.xyz) * environment.present.b;
         if count > 8u {
             var third = vec4f(0.0);
             var fourth = vec4f(0.0);
             if count > 9u {
-                third = glint_environment_indicators_at(2u, direction, mip) * visible;
+                third = glint_environment_indicators(environment, 2u, direction, roughness) * visible;
             }
             if count > 13u {
-                fourth = glint_environment_indicators_at(3u, direction, mip) * visible;
+                fourth = glint_environment_indicators(environment, 3u, direction, roughness) * visible;
             }
             p.c = vec4f(second.w, third.xyz) * environment.present.c;
             p.d = vec4f(third.w, fourth.xyz) * environment.present.d;
@@ -152,14 +222,17 @@ fn glint_std_factor(moments: vec2f, square: f32, visible: f32) -> f32 {
 fn glint_chances(environment: GlintEnvironment, surface: GlintSurface) -> GlintChances {
     let cos_o = dot(surface.normal, surface.view);
     let mirror = 2.0 * cos_o * surface.normal - surface.view;
-    let mip = glint_environment_mip(environment, surface.alpha);
+    let roughness = glint_environment_roughness(environment, surface.alpha);
     let areas = glint_environment_areas(cos_o, surface.alpha);
-    let radiance = glint_environment_radiance_at(mirror, mip);
+    let filtered = glint_environment_filtered(mirror, roughness);
+    let radiance = glint_environment_radiance(mirror, roughness, filtered);
     let visible = min(areas.z / areas.w, 1.0);
-    let p = glint_level_probabilities(environment, mirror, mip, visible);
+    let p = glint_level_probabilities(environment, mirror, roughness, visible);
     let moments = glint_facet_moments(environment, p);
-    let std_factor = glint_std_factor(moments, radiance.w * radiance.w, visible);
-    return GlintChances((surface.f0 * areas.x + areas.y) * radiance.rgb, p, moments, std_factor, mirror, mip);
+    // Levels are filtered, so the moment beside them is that of what is filtered.
+    let std_factor = glint_std_factor(moments, filtered.w * filtered.w, visible);
+    let smooth_radiance = (surface.f0 * areas.x + areas.y) * radiance.rgb;
+    return GlintChances(smooth_radiance, p, moments, std_factor, mirror, roughness.colour_mip);
 }
 
 // Drawn over expected light, channel by channel.
@@ -176,7 +249,7 @@ fn glint_coloured_ratios(
     var drawn = vec3f(0.0);
     var expected = vec3f(0.0);
     for (var k = 1u; k < min(environment.levels, 16u); k++) {
-        let colour = glint_environment_colour_at(k - 1u, chances.mirror, chances.mip) * light[k / 4u][k % 4u];
+        let colour = glint_environment_colour_at(k - 1u, chances.mirror, chances.colour_mip) * light[k / 4u][k % 4u];
         drawn += colour * drawn_counts[k / 4u][k % 4u];
         expected += colour * (p[k / 4u][k % 4u] * facets);
     }

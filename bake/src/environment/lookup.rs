@@ -68,45 +68,57 @@ pub fn cube_taps(direction: Vec3, size: u32) -> CubeTaps {
     }
 }
 
-/// Calls `add` with mip, face, column, row and weight of the eight texels around a direction at `mip`, 0 to the last.
-fn trilinear(environment: &Environment, direction: Vec3, mip: f32, mut add: impl FnMut(u32, (usize, u32, u32), f32)) {
+/// The mirror around a direction: R, G, B and root mean square luminance.
+pub fn mirror_at(environment: &Environment, direction: Vec3) -> [f32; 4] {
+    roughness_at(environment, 0, direction)
+}
+
+/// Radiance of layer `layer` of a mip around a direction: R, G, B and root mean square luminance.
+pub fn radiance_at(environment: &Environment, layer: u32, direction: Vec3, mip: u32) -> [f32; 4] {
+    roughness_at(environment, index_of(environment, mip, layer), direction)
+}
+
+/// Filtered roughness that a layer of a mip holds.
+fn index_of(environment: &Environment, mip: u32, layer: u32) -> u32 {
+    1 + mip * environment.params.per_size + layer
+}
+
+fn roughness_at(environment: &Environment, index: u32, direction: Vec3) -> [f32; 4] {
+    let taps = cube_taps(direction, environment.params.size(index));
+    let mut sum = [0.0; 4];
+    for ((face, i, j), weight) in taps.texels.into_iter().zip(taps.weights) {
+        let texel = environment.radiance_texel(index, face, i, j);
+        (0..4).for_each(|c| sum[c] += weight * texel[c]);
+    }
+    sum
+}
+
+/// Shares of levels around a direction, layer `layer` of the indicators of a mip: that of radiance times the number of layers of
+/// each, plus a quarter of the level.
+pub(super) fn indicators_at(environment: &Environment, layer: u32, direction: Vec3, mip: u32) -> [f32; 4] {
+    let layers = environment.params.indicator_layers();
+    let index = index_of(environment, mip, layer / layers);
+    let taps = cube_taps(direction, environment.params.size(index));
+    let mut sum = [0.0; 4];
+    for ((face, i, j), weight) in taps.texels.into_iter().zip(taps.weights) {
+        let texel = environment.indicator_texel((layer % layers) as usize, index, face, i, j);
+        (0..4).for_each(|c| sum[c] += weight * texel[c]);
+    }
+    sum
+}
+
+/// Colour of level `layer` + 1 around a direction, of luminance 1, at `mip`, 0 to the last.
+pub fn colour_at(environment: &Environment, layer: u32, direction: Vec3, mip: f32) -> [f32; 3] {
     let last = environment.params.mips() - 1;
     let low = (mip.floor() as u32).min(last);
+    let mut sum = [0.0; 3];
     for (mip, share) in [(low, 1.0 - (mip - low as f32)), ((low + 1).min(last), mip - low as f32)] {
-        let taps = cube_taps(direction, environment.size(mip));
-        for (texel, weight) in taps.texels.into_iter().zip(taps.weights) {
-            add(mip, texel, share * weight);
+        let taps = cube_taps(direction, environment.params.size(index_of(environment, mip, 0)));
+        for ((face, i, j), weight) in taps.texels.into_iter().zip(taps.weights) {
+            let texel = environment.colour_texel(layer as usize, mip, face, i, j);
+            (0..3).for_each(|c| sum[c] += share * weight * texel[c]);
         }
     }
-}
-
-/// Filtered radiance around a direction: R, G, B and root mean square luminance.
-pub fn radiance_at(environment: &Environment, direction: Vec3, mip: f32) -> [f32; 4] {
-    let mut sum = [0.0; 4];
-    trilinear(environment, direction, mip, |mip, (face, i, j), weight| {
-        let texel = environment.radiance_texel(mip, face, i, j);
-        (0..4).for_each(|c| sum[c] += weight * texel[c]);
-    });
-    sum
-}
-
-/// Shares of levels 4 `layer` + 1 to 4 `layer` + 4 around a direction.
-pub(super) fn indicators_at(environment: &Environment, layer: usize, direction: Vec3, mip: f32) -> [f32; 4] {
-    let mut sum = [0.0; 4];
-    trilinear(environment, direction, mip, |mip, (face, i, j), weight| {
-        let texel = environment.indicator_texel(layer, mip, face, i, j);
-        (0..4).for_each(|c| sum[c] += weight * texel[c]);
-    });
-    sum
-}
-
-/// Colour of level `layer` + 1 around a direction, of luminance 1.
-pub fn colour_at(environment: &Environment, layer: usize, direction: Vec3, mip: f32) -> [f32; 3] {
-    let mut sum = [0.0; 3];
-    trilinear(environment, direction, mip, |mip, (face, i, j), weight| {
-        let texel = environment.colour_texel(layer, mip, face, i, j);
-        (0..3).for_each(|c| sum[c] += weight * texel[c]);
-    });
     sum
 }
 

@@ -3,16 +3,20 @@
 use super::image::EnvironmentImage;
 use super::tree::{BLOCK_BYTES, CELL, REMEMBERED};
 use crate::error::{BakeError, Result};
-use glint_formats::environment::{Kernel, LevelChoice, MAX_FACE_SIZE, MAX_LEVELS};
+use glint_formats::environment::{Kernel, LevelChoice, MAX_FACE_SIZE, MAX_LEVELS, MAX_PER_SIZE};
 
 /// What a program holds before it bakes.
 const PROGRAM_BYTES: u64 = 8 << 20;
 /// Smallest edge of a face.
 pub const MIN_FACE_SIZE: u32 = 4;
-/// Error of radiance that can be asked for; sums in single precision do not carry smaller ones.
+/// Below [`SHARP`](glint_formats::environment::SHARP) reads may have so many times the error.
+pub const OF_SHARP_READS: f64 = 3.0;
+/// Error of the filter that can be asked for; sums in single precision do not carry smaller ones.
 pub const ERROR_RANGE: (f64, f64) = (1e-4, 0.2);
-/// Edge of a face of the last mip by default; coarser faces are too coarse for trilinear look-ups of rough lobes.
-pub const DEFAULT_MIN_FACE_SIZE: u32 = 8;
+/// Edge of the smallest faces by default; coarser ones are too coarse for look-ups of rough lobes.
+pub const DEFAULT_MIN_FACE_SIZE: u32 = 16;
+/// Filtered roughnesses of each face size by default.
+pub const DEFAULT_PER_SIZE: u32 = 4;
 /// Darkest radiance that the paper's levels tell apart, by default.
 pub const DEFAULT_FLOOR: f64 = 1e-3;
 
@@ -28,10 +32,12 @@ pub enum LevelCount {
 /// Options of the environment bake.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnvironmentOptions {
-    /// Edge of a face of the first mip, a power of two.
+    /// Edge of a face of the mirror, a power of two. Those of the least filtered roughnesses are half as large.
     pub face_size: u32,
-    /// Edge of a face of the last mip, a power of two.
+    /// Edge of a face of the largest roughnesses, a power of two.
     pub min_face_size: u32,
+    /// Filtered roughnesses of each face size, 1 to [`MAX_PER_SIZE`].
+    pub per_size: u32,
     /// Radiance levels.
     pub levels: LevelCount,
     /// How they are chosen.
@@ -40,12 +46,15 @@ pub struct EnvironmentOptions {
     pub floor: f64,
     /// Whether levels have colours of their own.
     pub coloured: bool,
-    /// Root mean square error of every mip over its mean.
-    pub max_error: f64,
+    /// Root mean square error of the texels of every roughness over the mean, that the filter keeps.
+    pub filter_error: f64,
+    /// Root mean square of the relative errors of what is read at α of [`SHARP`](glint_formats::environment::SHARP) and above;
+    /// [`OF_SHARP_READS`] times that below. A bake that misses it fails; none asks for none.
+    pub max_error: Option<f64>,
     /// Filter.
     pub kernel: Kernel,
-    /// Texels a mip that are compared with sums over the source, at most.
-    pub measured_texels: u32,
+    /// Look-ups that are compared with sums over the source, and a sixteenth as many texels of every roughness.
+    pub measured_reads: u32,
 }
 
 impl Default for EnvironmentOptions {
@@ -53,21 +62,30 @@ impl Default for EnvironmentOptions {
         EnvironmentOptions {
             face_size: 256,
             min_face_size: DEFAULT_MIN_FACE_SIZE,
+            per_size: DEFAULT_PER_SIZE,
             levels: LevelCount::Exactly(4),
             level_choice: LevelChoice::Optimal,
             floor: DEFAULT_FLOOR,
             coloured: false,
-            max_error: 0.005,
-            kernel: Kernel::Ndf,
-            measured_texels: 16,
+            filter_error: 0.005,
+            max_error: None,
+            kernel: Kernel::GgxSoft,
+            measured_reads: 128,
         }
     }
 }
 
 impl EnvironmentOptions {
-    /// Number of mips.
-    pub fn mips(&self) -> u32 {
-        self.face_size.ilog2() - self.min_face_size.ilog2() + 1
+    /// Number of filtered roughnesses.
+    pub fn filtered(&self) -> u32 {
+        (self.face_size.ilog2() - self.min_face_size.ilog2()) * self.per_size
+    }
+
+    /// Texels of the mirror, and of all filtered roughnesses of one of each face size.
+    fn texels(&self) -> [u64; 2] {
+        let of = |size: u32| 6 * u64::from(size).pow(2);
+        let sizes = 1..=self.face_size.ilog2() - self.min_face_size.ilog2();
+        [of(self.face_size), sizes.map(|step| of(self.face_size >> step)).sum()]
     }
 
     /// Checks what can be checked without an image.
@@ -82,8 +100,11 @@ impl EnvironmentOptions {
             ));
         }
         let least = self.min_face_size;
-        if !(least.is_power_of_two() && least <= size) {
-            return bad(format!("min-face-size: expected a power of two up to {size}, found {least}"));
+        if !(least.is_power_of_two() && least < size) {
+            return bad(format!("min-face-size: expected a power of two below {size}, found {least}"));
+        }
+        if !(1..=MAX_PER_SIZE).contains(&self.per_size) {
+            return bad(format!("roughnesses: expected 1 to {MAX_PER_SIZE} of a face size, found {}", self.per_size));
         }
         match self.levels {
             LevelCount::Exactly(count) if !(1..=MAX_LEVELS as u32).contains(&count) => {
@@ -103,8 +124,16 @@ impl EnvironmentOptions {
             );
         }
         let (low, high) = ERROR_RANGE;
-        if !(low..=high).contains(&self.max_error) {
-            return bad(format!("max-error: expected {low} to {high}, found {}", self.max_error));
+        if !(low..=high).contains(&self.filter_error) {
+            return bad(format!("filter-error: expected {low} to {high}, found {}", self.filter_error));
+        }
+        if let Some(error) = self.max_error {
+            if !(error > 0.0 && error.is_finite()) {
+                return bad(format!("max-error: expected a number above 0, found {error}"));
+            }
+            if self.measured_reads == 0 {
+                return bad("max-error: expected look-ups to measure it by, found none".into());
+            }
         }
         if !(self.floor > 0.0 && self.floor.is_finite()) {
             return bad(format!("floor: expected a radiance above 0, found {}", self.floor));
@@ -122,16 +151,17 @@ impl EnvironmentOptions {
 
     /// Bytes of the finished textures, at most.
     pub fn texture_bytes(&self) -> u64 {
-        let texels: u64 = (0..self.mips()).map(|mip| 6 * u64::from(self.face_size >> mip).pow(2)).sum();
+        let [mirror, filtered] = self.texels();
         let levels = self.most_levels() - 1;
         let colours = if self.coloured { 4 * levels } else { 0 };
-        texels * (8 * (1 + levels.div_ceil(4)) + colours)
+        8 * mirror + filtered * (8 * u64::from(self.per_size) * (1 + levels.div_ceil(4)) + colours)
     }
 
     /// Bytes that a program holds at most while it bakes `image` on so many threads, the image among them; within a fifth.
     ///
-    /// Most is held while the first filtered mip is, which is the largest: the image, the tree of its cells, radiance of all
-    /// mips in f64 (its factor depends on all of them), rounded indicators and colours, and that mip with all channels, twice.
+    /// Most is held while the last roughness of the largest filtered faces is made: the image, the tree of its cells, radiance of all
+    /// roughnesses in f64 (its factor depends on all of them), rounded indicators and colours, and that roughness with all channels,
+    /// twice.
     pub fn working_bytes(&self, image: &EnvironmentImage, threads: u64) -> u64 {
         let pixels = image.pixels.len() as u64;
         let levels = self.most_levels() - 1;
@@ -140,13 +170,12 @@ impl EnvironmentOptions {
         // Blocks are halved until they are no larger than a cell.
         let parts = pixels * u64::from(self.division(image)).pow(2);
         let cells = parts.div_ceil(u64::from(CELL)).next_power_of_two();
-        let face = u64::from(self.face_size).pow(2);
-        let light: u64 = (0..self.mips()).map(|mip| 32 * 6 * (face >> (2 * mip))).sum();
-        let radiance = 8 * light / 32;
-        // The first filtered mip has a quarter of the first one's texels.
-        let filtered = if self.mips() > 1 { 2 * 8 * channels * 6 * face / 4 } else { 0 };
+        let [mirror, filtered] = self.texels();
+        let radiance = 8 * (mirror + u64::from(self.per_size) * filtered);
+        let light = 4 * radiance;
+        let filtered = 2 * 8 * channels * mirror / 4;
         // Then radiance is rounded; where a sun needs a factor of its own, the brightest texels are sorted.
-        let rounded = radiance + 16 * 6 * face;
+        let rounded = radiance + 16 * mirror;
         let walk = 2 * REMEMBERED as u64 * block;
         PROGRAM_BYTES
             + 12 * pixels
@@ -158,7 +187,7 @@ impl EnvironmentOptions {
     }
 
     /// In how many parts a side pixels are divided for the filter, so that they are no wider than half a texel of the
-    /// first mip's equator. What the image says stays the same.
+    /// mirror's equator. What the image says stays the same.
     pub fn division(&self, image: &EnvironmentImage) -> u32 {
         (4 * self.face_size).div_ceil(image.width)
     }

@@ -1,8 +1,8 @@
-//! Filters the source into a mip to an error bound.
+//! Filters the source with the lobe of one roughness into a cube, to an error bound.
 //!
 //! Paper: sections 3.4 and 5, which filter by importance sampling with a sample count. Here a group of texels walks the
 //! tree of the source from coarse to fine and sums the blocks it may take as points, for all texels
-//! and channels at once ([`filter_sum`]). Nothing is random, so a sun is as exact as a grey sky; sharp mips see
+//! and channels at once ([`filter_sum`]). Nothing is random, so a sun is as exact as a grey sky; sharp lobes see
 //! single pixels and parts of them in the core of the lobe, rough ones large blocks.
 //!
 //! Which blocks a group may take as points is an error bound. //! With s the distance of a texel's direction from a block's mean, u = a + b s²/2 and k = (a/u)², t over the block's light
@@ -18,11 +18,11 @@
 
 use super::cube::texel_direction;
 use super::image::{longitude, luminance};
-use super::kernel::{Directions, LANES, Lobe, Points, filter_sum};
+use super::kernel::{Directions, LANES, Lobe, Points, filter_sum, reach};
 use super::tree::{Below, Block, Tree, Walk};
 use crate::progress::Progress;
 use glam::Vec3;
-use glint_formats::environment::Kernel;
+use glint_formats::environment::{Kernel, SHARP, SOFT_TOE};
 use rayon::prelude::*;
 
 /// Error that a block may have as a share of what it gives, before correction, in units of the error that is asked.
@@ -37,9 +37,7 @@ const ALIKE: f64 = 0.7;
 const FIELD: u32 = 16;
 /// See [`FIELD`]; its square is [`LANES`].
 const GROUP: u32 = 4;
-/// Below this roughness a lobe is no wider than some texels of its mip, and [`OF_SHARP`] times the error is allowed.
-pub const SHARP: f64 = 0.04;
-/// See [`SHARP`].
+/// Below roughness [`SHARP`] this times the error is allowed.
 pub const OF_SHARP: f64 = 4.0;
 
 /// Most parts of a pixel along one side.
@@ -57,7 +55,7 @@ const OF_KINK: f32 = 20.0;
 /// Blocks of a first look are no larger, so that even a lobe as wide as the hemisphere sees where it ends.
 const LOOK_RADIUS: f32 = 0.3;
 
-/// What the texels of a mip have in common.
+/// What the texels of a cube have in common.
 struct Filter<'a> {
     tree: &'a Tree<'a>,
     lobe: &'a Lobe,
@@ -68,9 +66,9 @@ struct Filter<'a> {
     mean: f64,
 }
 
-/// Texels of one mip, 6 · size² of as many numbers each as the source has channels: face by face, row by row. Means under the lobe.
-pub fn filter_mip(tree: &Tree<'_>, lobe: &Lobe, size: u32, max_error: f64, progress: &dyn Progress) -> Vec<f64> {
-    // Half of what is allowed, since some texels of a sharp mip look at a sun directly.
+/// Texels of one roughness, 6 · size² of as many numbers each as the source has channels: face by face, row by row. Means under the lobe.
+pub fn filter_cube(tree: &Tree<'_>, lobe: &Lobe, size: u32, max_error: f64, progress: &dyn Progress) -> Vec<f64> {
+    // Half of what is allowed, since some texels of a sharp lobe look at a sun directly.
     let max_error = if lobe.a < SHARP * SHARP { 0.5 * OF_SHARP * max_error } else { max_error };
     let mean = f64::from(tree.blocks[0].light) / (4.0 * std::f64::consts::PI);
     let filter = Filter { tree, lobe, bound: Bound::new(lobe), size, max_error, mean };
@@ -103,7 +101,7 @@ struct Square {
     edge: u32,
 }
 
-/// The squares of `edge` texels that a mip of `size` is divided in.
+/// The squares of `edge` texels that a cube of `size` is divided in.
 fn squares_of(size: u32, edge: u32) -> Vec<Square> {
     let per_face = size / edge;
     let square = |k: u32| Square {
@@ -116,8 +114,8 @@ fn squares_of(size: u32, edge: u32) -> Vec<Square> {
 }
 
 impl Filter<'_> {
-    /// Means of a field's texels, row by row. A texel brighter than the mip's mean has less error as a share, by the root
-    /// of their ratio: then bright and dark texels weigh alike in the mip's root mean square. How bright a field gets is
+    /// Means of a field's texels, row by row. A texel brighter than the mean has less error as a share, by the root
+    /// of their ratio: then bright and dark texels weigh alike in the root mean square. How bright a field gets is
     /// seen once it is done, so fields next to a sun are done twice.
     fn field(&self, walk: &mut Walk<'_>, field: Square) -> Vec<f64> {
         walk.forget_if_many();
@@ -235,6 +233,7 @@ pub struct Bound {
     a: f32,
     b: f32,
     kernel: Kernel,
+    reach: f32,
     alpha: f32,
     /// s² where b² s² / u² is largest.
     steepest: f32,
@@ -245,7 +244,7 @@ impl Bound {
     pub fn new(lobe: &Lobe) -> Bound {
         let (a, b) = (lobe.a as f32, lobe.b as f32);
         let steepest = if b > 0.0 { 2.0 * a / b } else { 4.0 };
-        Bound { a, b, kernel: lobe.kernel, alpha: a.sqrt(), steepest }
+        Bound { a, b, kernel: lobe.kernel, reach: reach(lobe.kernel) as f32, alpha: a.sqrt(), steepest }
     }
 
     /// Gathers the points of a group among the blocks of `stack` and below, and empties it. Blocks that the group may
@@ -266,7 +265,7 @@ impl Bound {
             let reach = block.radius + group.radius;
             let near = (distance - reach).max(0.0);
             // All of the block lies below every texel's horizon.
-            if near * near > 2.0 {
+            if near * near > 2.0 * self.reach {
                 continue;
             }
             let parts = self.parts(&block, near, distance + reach, allowance);
@@ -307,7 +306,13 @@ impl Bound {
         let relative = curve + (slope * edge_slope + 0.5 * edge_curve) * variance;
         // The horizon's kink cuts the block off somewhere. What it gives there is next to nothing, so no share of that
         // is allowed, only one of the texel.
-        let kink = if near2 < 2.0 && far2 > 2.0 { 0.4 * edge_slope * variance.sqrt() } else { 0.0 };
+        let toe = SOFT_TOE as f32;
+        let kink = match self.kernel {
+            // Bent, not broken, but in more blocks.
+            Kernel::GgxSoft if near2 < 2.0 * (1.0 + toe) && far2 > 2.0 * (1.0 - toe) => 1.5 / toe * variance,
+            Kernel::Ndf | Kernel::GgxNl if near2 < 2.0 && far2 > 2.0 => 0.4 * edge_slope * variance.sqrt(),
+            _ => 0.0,
+        };
         let peak = self.a / (self.a + 0.5 * self.b * near2);
         let peak = peak * peak;
         let gradient = peak * (first_slope + edge_slope) * far.min(1.5);
@@ -338,7 +343,7 @@ impl Bound {
     /// Largest slope and curvature of the last factor where the cosine is `low` or more, as shares of it near 1.
     fn edge(&self, low: f32) -> (f32, f32) {
         match self.kernel {
-            Kernel::GgxNl => (1.0, 0.0),
+            Kernel::GgxNl | Kernel::GgxSoft => (1.0, 0.0),
             Kernel::Ndf if low <= 0.6 * self.alpha => (2.0 / self.alpha, 3.0 / (self.alpha * self.alpha)),
             Kernel::Ndf => {
                 let bent = self.a / (low * low * low);

@@ -1,6 +1,6 @@
 //! Compares stored texels with sums over the source.
 //!
-//! Error of a mip: root mean square of the luminance error over all texels, over the mean luminance of the mip; and the
+//! Error of a roughness: root mean square of the luminance error over all texels, over the mean luminance of the source; and the
 //! largest error of a measured texel as a share of its exact value. Texels are chosen at random, half of them evenly and
 //! half by their luminance, and weighted by how likely each was, so that a sun of a few texels is not missed.
 
@@ -8,16 +8,15 @@ use super::baked::Environment;
 use super::cube::texel_direction;
 use super::eval::Chances;
 use super::image::{EnvironmentImage, luminance};
-use super::prefilter::{OF_SHARP, SHARP};
-use super::reference::{Filtered, filtered, texel_mean};
+use super::prefilter::OF_SHARP;
+use super::reads;
+use super::reference::{Filtered, filtered, texel_mean, with_small_pixels};
 use crate::progress::Progress;
 use crate::rng::{ItemRng, Purpose};
-use glint_formats::environment::{EnvironmentParams, MeasuredMip};
+use glint_formats::environment::{EnvironmentParams, Kernel, MeasuredTexels, SHARP};
 use rayon::prelude::*;
 
-/// Images of fewer columns have their pixels divided, so that the reference has not to divide them everywhere.
-const FINE_WIDTH: u32 = 256;
-/// Lines over a texel of the first mip.
+/// Lines over a texel of the mirror.
 const ROWS: u32 = 512;
 
 /// One texel and what it should hold.
@@ -29,7 +28,7 @@ pub struct Compared {
     pub stored: [f32; 4],
     /// As the reference has it.
     pub exact: Filtered,
-    /// Share of the mip that the texel stands for; over all compared texels 1 on average.
+    /// Share of the texels that it stands for; over all compared texels 1 on average.
     pub weight: f64,
 }
 
@@ -40,57 +39,75 @@ impl Compared {
     }
 }
 
-/// Compares up to `count` texels of a mip, all of them where there are no more.
-pub fn compare(image: &EnvironmentImage, environment: &Environment, mip: u32, count: u32) -> Vec<Compared> {
-    let fine;
-    let image = match FINE_WIDTH.div_ceil(image.width) {
-        0 | 1 => image,
-        parts => {
-            fine = image.divided(parts);
-            &fine
-        }
-    };
-    let size = environment.size(mip);
+/// Compares up to `count` texels of roughness `index`, 0 for the mirror; all of them where there are no more.
+pub fn compare(image: &EnvironmentImage, environment: &Environment, index: u32, count: u32) -> Vec<Compared> {
+    let params = &environment.params;
+    let cube = Cube { kernel: params.kernel, alpha: params.roughness[index as usize], size: params.size(index) };
+    compare_cube(image, &cube, index, count, |face, i, j| environment.radiance_texel(index, face, i, j))
+}
+
+/// What the texels of a cube should be.
+#[derive(Clone, Copy, Debug)]
+pub struct Cube {
+    /// Filter.
+    pub kernel: Kernel,
+    /// GGX roughness α; 0 for means over texels.
+    pub alpha: f64,
+    /// Edge of a face in texels.
+    pub size: u32,
+}
+
+/// Compares up to `count` texels of a cube, which `texel` gives by face, column and row. Their choice follows `seed`.
+pub fn compare_cube(
+    image: &EnvironmentImage,
+    cube: &Cube,
+    seed: u32,
+    count: u32,
+    texel: impl Fn(usize, u32, u32) -> [f32; 4] + Sync,
+) -> Vec<Compared> {
+    let image = &*with_small_pixels(image);
+    let Cube { kernel, alpha, size } = *cube;
     let all = 6 * size * size;
-    let below = luminance_below(environment, mip);
-    let (kernel, alpha) = (environment.params.kernel, environment.params.roughness[mip as usize]);
+    let place = |k: u32| ((k / (size * size)) as usize, k % size, k / size % size);
+    let below = luminance_below(all, |k| {
+        let (face, i, j) = place(k);
+        texel(face, i, j)
+    });
     (0..count.min(all))
         .into_par_iter()
         .map(|k| {
-            let (index, weight) = if all <= count { (k, 1.0) } else { chosen(&below, mip, k) };
-            let texel = ((index / (size * size)) as usize, index % size, index / size % size);
-            let (face, i, j) = texel;
+            let (at, weight) = if all <= count { (k, 1.0) } else { chosen(&below, seed, k) };
+            let (face, i, j) = place(at);
             let exact = if alpha == 0.0 {
                 texel_mean(image, face, i, j, size, ROWS)
             } else {
                 filtered(image, kernel, texel_direction(face, i, j, size), alpha)
             };
-            Compared { texel, stored: environment.radiance_texel(mip, face, i, j), exact, weight }
+            Compared { texel: (face, i, j), stored: texel(face, i, j), exact, weight }
         })
         .collect()
 }
 
-/// Luminance of all stored texels of a mip up to each, over the whole; evenly rising where there is no light.
-fn luminance_below(environment: &Environment, mip: u32) -> Vec<f64> {
-    let size = environment.size(mip);
+/// Luminance of all texels up to each, over the whole; evenly rising where there is no light.
+fn luminance_below(all: u32, texel: impl Fn(u32) -> [f32; 4]) -> Vec<f64> {
     let mut sum = 0.0;
-    let mut below: Vec<f64> = (0..6 * size * size)
+    let mut below: Vec<f64> = (0..all)
         .map(|k| {
-            let texel = environment.radiance_texel(mip, (k / (size * size)) as usize, k % size, k / size % size);
+            let texel = texel(k);
             sum += luminance([0, 1, 2].map(|c| f64::from(texel[c])));
             sum
         })
         .collect();
     for (k, value) in below.iter_mut().enumerate() {
-        *value = if sum > 0.0 { *value / sum } else { (k + 1) as f64 / f64::from(6 * size * size) };
+        *value = if sum > 0.0 { *value / sum } else { (k + 1) as f64 / f64::from(all) };
     }
     below
 }
 
 /// A random texel and 1 over how much likelier it was than in an even choice: even numbers choose evenly, odd ones by
 /// luminance.
-fn chosen(below: &[f64], mip: u32, k: u32) -> (u32, f64) {
-    let mut rng = ItemRng::new(u64::from(mip), Purpose::EnvironmentTexels, k);
+fn chosen(below: &[f64], seed: u32, k: u32) -> (u32, f64) {
+    let mut rng = ItemRng::new(u64::from(seed), Purpose::EnvironmentTexels, k);
     let all = below.len();
     let index = if k.is_multiple_of(2) {
         rng.below(all as u32) as usize
@@ -102,36 +119,45 @@ fn chosen(below: &[f64], mip: u32, k: u32) -> (u32, f64) {
     (index as u32, 1.0 / (0.5 + 0.5 * share * all as f64))
 }
 
-/// Root mean square error over the mean that a mip may have.
-pub fn allowed_error(params: &EnvironmentParams, mip: usize) -> f64 {
-    params.max_error * if params.roughness[mip] < SHARP { OF_SHARP } else { 1.0 }
+/// Root mean square error over the mean that the texels of a roughness may have.
+pub fn allowed_error(params: &EnvironmentParams, index: usize) -> f64 {
+    params.filter_error * if params.roughness[index] < SHARP { OF_SHARP } else { 1.0 }
 }
 
-/// Error of compared texels. `mean` is the mean luminance of the mip.
-pub fn error_of(compared: &[Compared], mean: f64) -> MeasuredMip {
+/// Error of compared texels. `mean` is the mean luminance of the source.
+pub fn error_of(compared: &[Compared], mean: f64) -> MeasuredTexels {
     if compared.is_empty() || mean <= 0.0 {
-        return MeasuredMip::default();
+        return MeasuredTexels::default();
     }
     let squares: f64 = compared.iter().map(|c| c.weight * c.error().powi(2)).sum();
     let shares = compared.iter().map(|c| c.error().abs() / c.exact.luminance.max(1e-12 * mean));
-    MeasuredMip { rmse: (squares / compared.len() as f64).sqrt() / mean, worst: shares.fold(0.0, f64::max) }
+    MeasuredTexels { rmse: (squares / compared.len() as f64).sqrt() / mean, worst: shares.fold(0.0, f64::max) }
 }
 
-/// Measures every mip by up to `count` texels and records it.
+/// Seed of the look-ups that a bake measures.
+const READS_SEED: u64 = 0;
+/// Look-ups for each texel that is measured of every roughness.
+const READS_PER_TEXEL: u32 = 16;
+
+/// Measures `count` look-ups and a sixteenth as many texels of every roughness, and records their errors.
 pub(super) fn measure(image: &EnvironmentImage, count: u32, environment: &mut Environment, progress: &dyn Progress) {
-    let mips = environment.params.mips();
-    environment.params.measured.texels = count;
     if count == 0 {
         return;
     }
-    progress.begin("measure", u64::from(mips));
-    // Filters keep the mean over the sphere up to the horizon's part, so one mean serves all mips.
+    let texels = count.div_ceil(READS_PER_TEXEL);
+    let roughnesses = environment.params.roughness.len() as u32;
+    environment.params.measured.texels_measured = texels;
+    progress.begin("measure", u64::from(roughnesses) + 1);
+    // Filters keep the mean over the sphere up to the horizon's part, so one mean serves all roughnesses.
     let mean = luminance(environment.params.mean_radiance);
-    for mip in 0..mips {
-        let compared = compare(image, environment, mip, count);
-        environment.params.measured.mips.push(error_of(&compared, mean));
+    for index in 0..roughnesses {
+        let compared = compare(image, environment, index, texels);
+        environment.params.measured.texels.push(error_of(&compared, mean));
         progress.advance(1);
     }
+    let reads = reads::random(image, environment, (reads::LEAST_ALPHA, 1.0), READS_SEED, count);
+    environment.params.measured.reads = reads::errors_of(environment, &reads).to_vec();
+    progress.advance(1);
     progress.end();
 }
 

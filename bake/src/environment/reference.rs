@@ -13,7 +13,8 @@ use super::cube::face_direction;
 use super::image::{EnvironmentImage, direction};
 use crate::rng::{ItemRng, Purpose};
 use glam::DVec3;
-use glint_formats::environment::Kernel;
+use glint_formats::environment::{Kernel, SOFT_TOE};
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 /// Parts of a pixel are at most this part of α wide in the core of a lobe,
@@ -26,6 +27,9 @@ const PER_LOBE: f64 = 12.0;
 /// and this part of the distance to its middle outside.
 const PER_DISTANCE_OF_FACETS: f64 = 30.0;
 
+/// Images of fewer columns have their pixels divided, so that sums have not to divide them everywhere.
+const FINE_WIDTH: u32 = 256;
+
 /// A filtered value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Filtered {
@@ -37,6 +41,14 @@ pub struct Filtered {
     pub square: f64,
 }
 
+/// The same radiance in pixels that are small enough for sums to be fast.
+pub(super) fn with_small_pixels(image: &EnvironmentImage) -> Cow<'_, EnvironmentImage> {
+    match FINE_WIDTH.div_ceil(image.width) {
+        0 | 1 => Cow::Borrowed(image),
+        parts => Cow::Owned(image.divided(parts)),
+    }
+}
+
 /// GGX density of facets at a cosine.
 pub fn ggx(cos_h: f64, alpha: f64) -> f64 {
     let a = alpha * alpha;
@@ -46,13 +58,15 @@ pub fn ggx(cos_h: f64, alpha: f64) -> f64 {
 /// Weight of light from `l` in a texel towards `n`.
 fn kernel_weight(kernel: Kernel, n: DVec3, l: DVec3, alpha: f64) -> f64 {
     let cos_l = n.dot(l);
-    if cos_l <= 0.0 {
+    if 1.0 - cos_l >= farthest(kernel) {
         return 0.0;
     }
     let h = (n + l).normalize();
     let facets = ggx(n.dot(h), alpha);
     match kernel {
         Kernel::GgxNl => facets * cos_l,
+        Kernel::GgxSoft if cos_l >= SOFT_TOE => facets * cos_l,
+        Kernel::GgxSoft => facets * (cos_l + SOFT_TOE).powi(2) / (4.0 * SOFT_TOE),
         Kernel::Ndf => {
             let tangent2 = (1.0 - cos_l * cos_l).max(0.0) / (cos_l * cos_l);
             facets * 2.0 / (1.0 + (1.0 + alpha * alpha * tangent2).sqrt())
@@ -60,10 +74,16 @@ fn kernel_weight(kernel: Kernel, n: DVec3, l: DVec3, alpha: f64) -> f64 {
     }
 }
 
+/// 1 − cosine at which a kernel ends.
+fn farthest(kernel: Kernel) -> f64 {
+    if kernel == Kernel::GgxSoft { 1.0 + SOFT_TOE } else { 1.0 }
+}
+
 /// Calls `add` with index and weight times solid angle of every pixel that has any weight.
 fn over_pixels(image: &EnvironmentImage, kernel: Kernel, n: DVec3, alpha: f64, mut add: impl FnMut(usize, f64)) {
     let (width, height) = (f64::from(image.width), f64::from(image.height));
     let tall = PI / height;
+    let reach = (2.0 * farthest(kernel)).sqrt();
     let centres: Vec<[f64; 2]> = (0..image.width)
         .map(|x| 2.0 * PI * ((f64::from(x) + 0.5) / width - 0.5))
         .map(|longitude| [libm::sin(longitude), libm::cos(longitude)])
@@ -77,8 +97,7 @@ fn over_pixels(image: &EnvironmentImage, kernel: Kernel, n: DVec3, alpha: f64, m
         for x in 0..image.width {
             let [s, c] = centres[x as usize];
             let distance = (DVec3::new(cosine * s, sine, -cosine * c) - n).length();
-            // The farthest point of the horizon is √2 away.
-            if distance > std::f64::consts::SQRT_2 + tall + wide {
+            if distance > reach + tall + wide {
                 continue;
             }
             let fine = (alpha / PER_ALPHA).max((distance - tall.max(wide)).max(0.0) / PER_DISTANCE);

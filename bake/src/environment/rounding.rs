@@ -6,7 +6,7 @@
 //! largest gives way, by a unit in its last place at a time.
 //!
 //! A half float is off by 1 in 2048 at the worst. A sun is a few texels of 10⁵ times the mean, so their rounding alone
-//! can exceed the error that a sharp mip may have. How much it is depends on where between two powers of two those few
+//! can exceed the error that a sharp roughness may have. How much it is depends on where between two powers of two those few
 //! texels fall, so where it matters the factor is chosen for them. The paper stores radiance as it is.
 
 use super::image::{EnvironmentImage, luminance};
@@ -23,7 +23,7 @@ const UNHEARD: f64 = 0.25;
 const EARNED: f64 = 0.5;
 /// Factors that are tried between a power of two and the next; all of them are exact in f32.
 const STEPS: u32 = 512;
-/// Texels a mip, its brightest, that factors are tried on. Where more matter, rounding averages out for any factor.
+/// Texels a roughness, its brightest, that factors are tried on. Where more matter, rounding averages out for any factor.
 const TRIED: usize = 512;
 
 /// Bits of the half float nearest to a value that is not negative; the largest finite one beyond.
@@ -59,9 +59,9 @@ pub fn shared_exponent(rgb: [f64; 3]) -> u32 {
     (exponent as u32) << 27 | b << 18 | g << 9 | r
 }
 
-/// One mip before rounding.
+/// Texels of one roughness before rounding.
 #[derive(Clone, Copy, Debug)]
-pub struct Mip<'a> {
+pub struct Texels<'a> {
     /// Numbers of all texels, R, G and B first.
     pub texels: &'a [f64],
     /// Numbers a texel.
@@ -71,8 +71,8 @@ pub struct Mip<'a> {
 }
 
 /// Stored radiance times this is radiance: 1, or what brings `image` into the range of half floats, or what makes the
-/// brightest texels of `mips` round well.
-pub fn radiance_scale(image: &EnvironmentImage, mips: &[Mip<'_>]) -> f64 {
+/// brightest texels of `cubes` round well.
+pub fn radiance_scale(image: &EnvironmentImage, cubes: &[Texels<'_>]) -> f64 {
     let brightest = image.pixels.iter().flatten().fold(0.0f32, |a, b| a.max(*b));
     let brightest = f64::from(brightest);
     if brightest == 0.0 {
@@ -84,19 +84,18 @@ pub fn radiance_scale(image: &EnvironmentImage, mips: &[Mip<'_>]) -> f64 {
         libm::exp2(libm::ceil(libm::log2(brightest / MAX_STORED)))
     };
     let mean = luminance(image.mean());
-    let worst = |mips: &[Mip<'_>], scale: f64| {
-        mips.iter().map(|mip| rounding_error(mip, scale) / (mean * mip.max_error)).fold(0.0, f64::max)
-    };
-    if worst(mips, plain) <= UNHEARD {
+    let worst =
+        |scale: f64| cubes.iter().map(|cube| rounding_error(cube, scale) / (mean * cube.max_error)).fold(0.0, f64::max);
+    if worst(plain) <= UNHEARD {
         return plain;
     }
-    let bright: Vec<(Vec<f64>, &Mip<'_>)> = mips.iter().map(|mip| (brightest_of(mip), mip)).collect();
-    // Spread over as many texels as the mip has, so that mips compare as they do whole.
+    let bright: Vec<(Vec<f64>, &Texels<'_>)> = cubes.iter().map(|cube| (brightest_of(cube), cube)).collect();
+    // Spread over as many texels as the cube has, so that cubes compare as they do whole.
     let share = |scale: f64| {
-        let of = |(texels, mip): &(Vec<f64>, &Mip<'_>)| {
-            let few = Mip { texels, channels: 3, max_error: mip.max_error };
-            let part = (texels.len() as f64 / 3.0) / (mip.texels.len() / mip.channels) as f64;
-            rounding_error(&few, scale) * part.sqrt() / mip.max_error
+        let of = |(texels, cube): &(Vec<f64>, &Texels<'_>)| {
+            let few = Texels { texels, channels: 3, max_error: cube.max_error };
+            let part = (texels.len() as f64 / 3.0) / (cube.texels.len() / cube.channels) as f64;
+            rounding_error(&few, scale) * part.sqrt() / cube.max_error
         };
         bright.iter().map(of).fold(0.0, f64::max)
     };
@@ -106,9 +105,9 @@ pub fn radiance_scale(image: &EnvironmentImage, mips: &[Mip<'_>]) -> f64 {
 }
 
 /// R, G and B of the texels that are brightest, in any order.
-fn brightest_of(mip: &Mip<'_>) -> Vec<f64> {
+fn brightest_of(cube: &Texels<'_>) -> Vec<f64> {
     let of = |texel: &[f64]| luminance([texel[0], texel[1], texel[2]]);
-    let mut all: Vec<&[f64]> = mip.texels.chunks_exact(mip.channels).collect();
+    let mut all: Vec<&[f64]> = cube.texels.chunks_exact(cube.channels).collect();
     if all.len() > TRIED {
         all.select_nth_unstable_by(TRIED, |a, b| of(b).total_cmp(&of(a)));
         all.truncate(TRIED);
@@ -116,14 +115,14 @@ fn brightest_of(mip: &Mip<'_>) -> Vec<f64> {
     all.into_iter().flat_map(|texel| texel[..3].iter().copied()).collect()
 }
 
-/// Root mean square error of luminance over a mip's texels that rounding alone makes.
-pub fn rounding_error(mip: &Mip<'_>, scale: f64) -> f64 {
+/// Root mean square error of luminance over the texels that rounding alone makes.
+pub fn rounding_error(cube: &Texels<'_>, scale: f64) -> f64 {
     let mut squares = 0.0;
-    for texel in mip.texels.chunks_exact(mip.channels) {
+    for texel in cube.texels.chunks_exact(cube.channels) {
         let error = [0, 1, 2].map(|c| f16::from_bits(half_bits(texel[c] / scale)).to_f64() * scale - texel[c]);
         squares += luminance(error).powi(2);
     }
-    let count = mip.texels.len() / mip.channels;
+    let count = cube.texels.len() / cube.channels;
     (squares / count.max(1) as f64).sqrt()
 }
 

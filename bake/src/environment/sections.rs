@@ -4,7 +4,7 @@ use super::baked::Environment;
 use crate::error::{BakeError, Result};
 use crate::pack_access::{names_with, parameters, records};
 use glint_formats::environment::{
-    ALBEDO, COLOURS, EnvironmentParams, EnvironmentUniform, INDICATORS, PARAMS, RADIANCE, UNIFORM,
+    ALBEDO, COLOURS, EnvironmentParams, EnvironmentUniform, INDICATORS, MIRROR, PARAMS, RADIANCE, UNIFORM,
 };
 use glint_formats::{Codec, Pack, Section};
 
@@ -14,6 +14,7 @@ pub fn to_sections(name: &str, environment: &Environment, codec: Codec) -> Vec<S
     let mut sections = vec![
         Section::parameters(PARAMS, name, params),
         Section::buffer(UNIFORM, name, &[environment.uniform]),
+        Section::texture(MIRROR, name, params.mirror_resource(), bytemuck::cast_slice(&environment.mirror).to_vec()),
         Section::texture(
             RADIANCE,
             name,
@@ -45,6 +46,7 @@ pub fn from_pack(pack: &Pack, name: &str) -> Result<Environment> {
         return Err(BakeError::BadInput(format!("'{name}': expected a record of {UNIFORM}, found none")));
     };
     let mut environment = Environment {
+        mirror: records(pack, MIRROR, name)?,
         radiance: records(pack, RADIANCE, name)?,
         indicators: Vec::new(),
         colours: Vec::new(),
@@ -54,6 +56,7 @@ pub fn from_pack(pack: &Pack, name: &str) -> Result<Environment> {
     };
     let params = &environment.params;
     let mut lengths = vec![
+        (params.mirror_resource(), 2 * environment.mirror.len()),
         (params.radiance_resource(), 2 * environment.radiance.len()),
         (params.albedo_resource(), 2 * environment.albedo.len()),
     ];

@@ -1,9 +1,9 @@
 //! Checks the contents of environment sections: what a sampler and a counting model rely on.
 
 use crate::bytes::f16_at;
-use crate::container::full_mip_count;
 use crate::environment::{
-    ALBEDO, COLOURS, EnvironmentParams, INDICATORS, MAX_FACE_SIZE, MAX_LEVELS, PARAMS, RADIANCE, UNIFORM,
+    ALBEDO, COLOURS, EnvironmentParams, INDICATORS, MAX_FACE_SIZE, MAX_LEVELS, MAX_PER_SIZE, MIRROR, PARAMS, RADIANCE,
+    UNIFORM, roughness_of,
 };
 use crate::issue::{Issue, IssueCode};
 use crate::sections::{Loaded, Sections};
@@ -13,11 +13,12 @@ pub(crate) fn check(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
     for section in sections.of_kind(PARAMS) {
         check_environment(sections, section, issues);
     }
-    sections.report_orphans(&[UNIFORM, RADIANCE, INDICATORS, COLOURS, ALBEDO], PARAMS, issues);
+    sections.report_orphans(&[UNIFORM, MIRROR, RADIANCE, INDICATORS, COLOURS, ALBEDO], PARAMS, issues);
 }
 
 fn check_environment(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec<Issue>) {
     let uniform = sections.need(UNIFORM, section, issues);
+    let mirror = sections.need(MIRROR, section, issues);
     let radiance = sections.need(RADIANCE, section, issues);
     let albedo = sections.need(ALBEDO, section, issues);
     let Some(params) = section.parameters::<EnvironmentParams>(issues) else { return };
@@ -35,10 +36,12 @@ fn check_environment(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut 
     {
         check_uniform(uniform, &params, issues);
     }
-    if let Some(radiance) = radiance
-        && radiance.expect(shape, params.radiance_resource(), issues)
-    {
-        check_values(radiance, IssueCode::EnvironmentRadiance, issues);
+    for (section, resource) in [(mirror, params.mirror_resource()), (radiance, params.radiance_resource())] {
+        if let Some(section) = section
+            && section.expect(shape, resource, issues)
+        {
+            check_values(section, IssueCode::EnvironmentRadiance, issues);
+        }
     }
     if let Some(albedo) = albedo
         && albedo.expect(shape, params.albedo_resource(), issues)
@@ -64,27 +67,36 @@ fn check_parameters(params: &EnvironmentParams) -> Result<(), String> {
     if !(size.is_power_of_two() && size <= MAX_FACE_SIZE) {
         return Err(format!("expected a face size that is a power of two up to {MAX_FACE_SIZE}, found {size}"));
     }
-    let mips = params.roughness.len();
-    if mips == 0 || mips > full_mip_count(size, size) as usize {
-        return Err(format!("expected 1 to {} mips, found {mips}", full_mip_count(size, size)));
+    if !(1..=MAX_PER_SIZE).contains(&params.per_size) {
+        return Err(format!("expected 1 to {MAX_PER_SIZE} roughnesses of a face size, found {}", params.per_size));
     }
-    let rises = params.roughness[0] == 0.0 && params.roughness.windows(2).all(|pair| pair[0] < pair[1]);
-    if !rises || params.roughness.iter().any(|alpha| !(0.0..=1.0).contains(alpha)) {
-        return Err(String::from("expected roughnesses that rise from 0 and end at 1 or below"));
+    let (filtered, most) = (params.roughness.len().saturating_sub(1), size.ilog2() * params.per_size);
+    if filtered == 0 || filtered > most as usize || params.filtered() % params.per_size != 0 {
+        return Err(format!(
+            "expected a roughness of 0 and {} to {most} others, {0} of each face size, found {} in all",
+            params.per_size,
+            params.roughness.len()
+        ));
+    }
+    let expected = roughness_of(size, params.filtered());
+    if !params.roughness.iter().zip(&expected).all(|(found, expected)| (found - expected).abs() <= 1e-9) {
+        return Err(format!("expected roughnesses {expected:?}, found {:?}", params.roughness));
     }
     if !(1..=1024).contains(&params.albedo_size) {
         return Err(format!("expected an albedo table of 1 to 1024 texels square, found {}", params.albedo_size));
     }
     let positive = |value: f64| value > 0.0 && value.is_finite();
-    if !positive(params.radiance_scale) || !positive(params.max_error) {
-        return Err(String::from("expected a positive radiance scale and error"));
+    let asked = [Some(params.filter_error), params.max_error];
+    if !positive(params.radiance_scale) || !asked.into_iter().flatten().all(positive) {
+        return Err(String::from("expected a positive radiance scale and errors"));
     }
     if params.coloured && params.levels.len() < 2 {
         return Err(String::from("expected two levels or more where levels have colours"));
     }
     let measured = &params.measured;
-    let errors = measured.mips.iter().flat_map(|mip| [mip.rmse, mip.worst]);
-    let all = errors.chain([measured.energy, measured.second_moment]).chain(params.mean_radiance);
+    let reads = measured.reads.iter().flat_map(|reads| [reads.relative, reads.of_mean, reads.worst]);
+    let errors = measured.texels.iter().flat_map(|texels| [texels.rmse, texels.worst]);
+    let all = errors.chain(reads).chain([measured.energy, measured.second_moment]).chain(params.mean_radiance);
     let all = all.chain(measured.rounding.iter().copied());
     for value in all {
         if !(value >= 0.0 && value.is_finite()) {
@@ -143,8 +155,8 @@ fn check_indicators(section: Loaded<'_>, params: &EnvironmentParams, issues: &mu
     let bytes = section.payload;
     let value = |texel: usize, c: usize| f64::from(f16_at(bytes, 2 * (4 * texel + c)));
     let mut first = 0;
-    for mip in 0..params.mips() {
-        let texels = 6 * ((params.face_size >> mip).max(1) as usize).pow(2);
+    for index in 1..=params.filtered() {
+        let texels = 6 * (params.size(index) as usize).pow(2);
         for texel in 0..texels {
             let mut sum = 0.0;
             let mut sound = true;
@@ -158,8 +170,8 @@ fn check_indicators(section: Loaded<'_>, params: &EnvironmentParams, issues: &mu
             }
             if !sound || sum > 1.0 {
                 let message = format!(
-                    "texel {texel} of mip {mip}: expected shares that are not negative and add up to 1 at most, found \
-                     a sum of {sum}"
+                    "texel {texel} of roughness {index}: expected shares that are not negative and add up to 1 at most, \
+                     found a sum of {sum}"
                 );
                 issues.push(section.error(IssueCode::EnvironmentIndicators, message));
                 return;

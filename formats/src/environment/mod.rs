@@ -16,13 +16,18 @@ use serde::{Deserialize, Serialize};
 pub const PARAMS: FourCc = FourCc(*b"ENPP");
 /// What shaders bind of the parameters: buffer of one [`EnvironmentUniform`].
 pub const UNIFORM: FourCc = FourCc(*b"ENUB");
-/// Prefiltered radiance: cube texture of half floats, R G B over [`EnvironmentParams::radiance_scale`]; alpha is the root mean square
-/// of the luminance under the same filter, on the same scale.
+/// The source as a mirror shows it: cube texture of half floats without mips, each texel the mean over its solid angle. R G B over
+/// [`EnvironmentParams::radiance_scale`]; alpha is the root mean square of the luminance, on the same scale.
+pub const MIRROR: FourCc = FourCc(*b"ENMI");
+/// Filtered radiance: cube array texture of half floats, R G B A as those of [`MIRROR`] under the filter of each roughness. Mip m has
+/// the roughnesses of its face size, one a layer, see [`EnvironmentParams::place`].
 pub const RADIANCE: FourCc = FourCc(*b"ENRA");
-/// Prefiltered indicators of levels 1, 2, …: cube texture of half floats, component c of layer l is level 4 l + c + 1. The darkest
+/// Filtered indicators of levels 1, 2, …: cube array texture of half floats with the mips of [`RADIANCE`]. Layer
+/// s · [`EnvironmentParams::indicator_layers`] + l belongs to layer s of the radiance; its component c is level 4 l + c + 1. The darkest
 /// level, level 0, is what is left of 1.
 pub const INDICATORS: FourCc = FourCc(*b"ENIN");
-/// Mean colour of levels 1, 2, … under the filter, each of luminance 1: cube texture, layer l is level l + 1.
+/// Mean colour of levels 1, 2, … under the filter, each of luminance 1: cube array texture with the mips of [`RADIANCE`], layer l is
+/// level l + 1. Of the roughnesses of a face size it has one, that of layer [`EnvironmentParams::colour_layer`].
 pub const COLOURS: FourCc = FourCc(*b"ENCO");
 /// Directional albedo and visible reflecting area: texture of [`ALBEDO_VK_FORMAT`], `albedo_size` texels square.
 ///
@@ -34,6 +39,7 @@ pub const ALBEDO: FourCc = FourCc(*b"ENAL");
 pub(crate) const KINDS: &[KnownKind] = &[
     KnownKind::first(PARAMS, "environment parameters"),
     KnownKind::first(UNIFORM, "environment uniform"),
+    KnownKind::first(MIRROR, "environment mirror"),
     KnownKind::first(RADIANCE, "environment radiance"),
     KnownKind::first(INDICATORS, "environment indicators"),
     KnownKind::first(COLOURS, "environment colours"),
@@ -42,7 +48,8 @@ pub(crate) const KINDS: &[KnownKind] = &[
 /// The bind group of `bind_environment.wgsl`.
 pub const BINDINGS: &[Binding] = &[
     Binding::Uniform(UNIFORM),
-    Binding::Texture(RADIANCE, View::FloatCube),
+    Binding::Texture(MIRROR, View::FloatCube),
+    Binding::Texture(RADIANCE, View::FloatCubeArray),
     Binding::Texture(INDICATORS, View::FloatCubeArray),
     Binding::Texture(COLOURS, View::FloatCubeArray),
     Binding::Texture(ALBEDO, View::Float2d),
@@ -54,10 +61,22 @@ pub const CUBE_VK_FORMAT: u32 = vk_format::R16G16B16A16_SFLOAT;
 pub const ALBEDO_VK_FORMAT: u32 = vk_format::R16G16B16A16_SFLOAT;
 /// VkFormat of level colours: E5B9G9R9_UFLOAT_PACK32.
 pub const COLOURS_VK_FORMAT: u32 = vk_format::E5B9G9R9_UFLOAT_PACK32;
+/// Roughness below which a lobe is no wider than some texels: errors of what is read there are kept apart.
+pub const SHARP: f64 = 0.04;
 /// Most radiance levels.
 pub const MAX_LEVELS: usize = 16;
 /// Largest edge of a face: what every WebGPU device offers.
 pub const MAX_FACE_SIZE: u32 = 8192;
+/// Most roughnesses of one face size: with four layers of indicators each they stay within 256 array layers of six faces, which
+/// every WebGPU device offers.
+pub const MAX_PER_SIZE: u32 = 8;
+/// The least filtered roughness times the edge of a face of the mirror: its lobe is some five texels of the filtered faces wide.
+const FIRST_TEXELS: f64 = 2.56;
+/// Largest value of the least filtered roughness, where there is more than one.
+const LARGEST_FIRST: f64 = 0.5;
+/// How much denser rough roughnesses lie than sharp ones, in the logarithm of α: see [`roughness_of`]. Chosen by the error of what
+/// is read between them.
+const BEND: f64 = -0.4;
 
 /// What radiance is weighted with. c is the cosine to the texel's direction, h the half vector of that direction
 /// and the light's.
@@ -68,6 +87,32 @@ pub enum Kernel {
     Ndf,
     /// The usual one of engines: D(h) · c over the hemisphere.
     GgxNl,
+    /// The same without a kink at the horizon: D(h) · s(c), s(c) = (c + τ)² / 4τ where |c| < τ = [`SOFT_TOE`], c above, 0 below.
+    GgxSoft,
+}
+
+/// Half the range of cosines over which [`Kernel::GgxSoft`] ends.
+pub const SOFT_TOE: f64 = 0.2;
+
+/// GGX roughness α of the mirror, 0, and of `filtered` filtered roughnesses under faces of `face_size` texels: rising, 1 last.
+///
+/// With α₁ the first of them and u = 1 − ln α / ln α₁, roughness i of n is where 1 + (n − 1) u (1 + q (1 − u)) = i, q = −.4.
+pub fn roughness_of(face_size: u32, filtered: u32) -> Vec<f64> {
+    let first = if filtered < 2 { 1.0 } else { (FIRST_TEXELS / f64::from(face_size)).min(LARGEST_FIRST) };
+    let alpha = |i: u32| {
+        if i == 0 {
+            return 0.0;
+        }
+        if i == filtered {
+            return 1.0;
+        }
+        let place = f64::from(i - 1) / f64::from(filtered - 1);
+        // The root of q u² − (1 + q) u + place = 0 in 0 … 1.
+        let half = 0.5 * (1.0 + BEND);
+        let u = (half - (half * half - BEND * place).sqrt()) / BEND;
+        libm::pow(first, 1.0 - u)
+    };
+    (0..=filtered).map(alpha).collect()
 }
 
 /// How the radiance levels were chosen.
@@ -80,39 +125,56 @@ pub enum LevelChoice {
     LogUniform,
 }
 
-/// Error of the stored texels against sums over the source image in f64.
+/// Error of the stored texels of a roughness against sums over the source image in f64.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct MeasuredMip {
-    /// Root mean square error of luminance over the measured texels, over the mean luminance of the mip.
+pub struct MeasuredTexels {
+    /// Root mean square error of luminance over the measured texels, over the mean luminance of the source.
     pub rmse: f64,
     /// Largest |error| of luminance of a measured texel, over its exact value.
+    pub worst: f64,
+}
+
+/// Error of what a shader reads, by look-ups in random directions at random roughnesses, against sums over the source image in f64.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MeasuredReads {
+    /// Look-ups.
+    pub count: u32,
+    /// Root mean square of the errors of luminance, each over its exact value.
+    pub relative: f64,
+    /// Root mean square error of luminance over the mean of the exact values.
+    pub of_mean: f64,
+    /// Largest |error| of luminance of a look-up, over its exact value.
     pub worst: f64,
 }
 
 /// Error as the bake measured it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MeasuredError {
-    /// One entry a mip; empty when nothing was measured.
-    pub mips: Vec<MeasuredMip>,
-    /// Texels measured a mip, at most.
-    pub texels: u32,
-    /// Luminance summed over the first mip's texels by solid angle, against the source: |ratio − 1|.
+    /// What is read where α is below [`SHARP`], and elsewhere; empty when nothing was measured.
+    pub reads: Vec<MeasuredReads>,
+    /// One entry a roughness; empty when nothing was measured.
+    pub texels: Vec<MeasuredTexels>,
+    /// Texels measured a roughness, at most.
+    pub texels_measured: u32,
+    /// Luminance summed over the mirror's texels by solid angle, against the source: |ratio − 1|.
     pub energy: f64,
     /// Relative error of the second moment of a facet's radiance with these levels: mean over directions and
     /// roughnesses, by the bake's own estimate.
     pub second_moment: f64,
-    /// A mip: root mean square error of luminance that rounding to the storage makes, over all texels, over the mean.
+    /// A roughness: root mean square error of luminance that rounding to the storage makes, over all texels, over the mean.
     pub rounding: Vec<f64>,
 }
 
 /// Parameters of an environment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EnvironmentParams {
-    /// Edge of a face of mip 0 in texels, a power of two.
+    /// Edge of a face of the mirror in texels, a power of two. Those of the first filtered roughnesses are half as large.
     pub face_size: u32,
+    /// Filtered roughnesses of each face size, 1 to [`MAX_PER_SIZE`].
+    pub per_size: u32,
     /// Filter.
     pub kernel: Kernel,
-    /// GGX roughness α of each mip, rising from 0.
+    /// GGX roughness α of the mirror, 0, and of every filtered roughness, rising, as [`roughness_of`] gives them.
     pub roughness: Vec<f64>,
     /// Stored radiance times this is radiance; exact in f32. Where a sun is a few texels, it is chosen so that they round
     /// well.
@@ -133,8 +195,10 @@ pub struct EnvironmentParams {
     pub negative_pixels: u64,
     /// Mean radiance over the sphere.
     pub mean_radiance: [f64; 3],
-    /// Error of radiance that was asked of every mip.
-    pub max_error: f64,
+    /// Error of radiance that the filter was asked to keep in the texels of every roughness.
+    pub filter_error: f64,
+    /// [`MeasuredReads::relative`] that was asked of the reads; none when none was.
+    pub max_error: Option<f64>,
     /// Error as the bake measured it.
     pub measured: MeasuredError,
 }
@@ -149,22 +213,35 @@ pub struct EnvironmentUniform {
     pub present: [f32; MAX_LEVELS],
     /// Number of levels, 1 to [`MAX_LEVELS`].
     pub levels: u32,
-    /// Number of mips.
-    pub mips: u32,
     /// 1 where levels have colours of their own, else 0.
     pub coloured: u32,
     /// Stored radiance times this is radiance.
     pub radiance_scale: f32,
+    /// Number of filtered roughnesses.
+    pub roughnesses: f32,
+    /// How many of them each face size has.
+    pub per_size: f32,
+    /// The least of them, α₁.
+    pub first_alpha: f32,
+    /// 1 / log₂ α₁; 0 where α₁ is 1.
+    pub inverse_log: f32,
+    /// q of [`roughness_of`].
+    pub bend: f32,
 }
 
 impl EnvironmentParams {
     /// What shaders bind of these parameters. Levels beyond [`MAX_LEVELS`] are left out.
     pub fn uniform(&self) -> EnvironmentUniform {
+        let first = self.roughness.get(1).copied().unwrap_or(1.0);
         let mut uniform = EnvironmentUniform {
             levels: self.levels.len() as u32,
-            mips: self.mips(),
             coloured: u32::from(self.coloured),
             radiance_scale: self.radiance_scale as f32,
+            roughnesses: self.filtered() as f32,
+            per_size: self.per_size as f32,
+            first_alpha: first as f32,
+            inverse_log: if first < 1.0 { (1.0 / libm::log2(first)) as f32 } else { 0.0 },
+            bend: BEND as f32,
             ..EnvironmentUniform::default()
         };
         for (k, level) in self.levels.iter().take(MAX_LEVELS).enumerate() {
@@ -174,12 +251,32 @@ impl EnvironmentParams {
         uniform
     }
 
-    /// Mips.
-    pub fn mips(&self) -> u32 {
-        self.roughness.len() as u32
+    /// Filtered roughnesses.
+    pub fn filtered(&self) -> u32 {
+        (self.roughness.len() as u32).max(1) - 1
     }
 
-    /// Layers of the indicator texture; 0 when one level needs none.
+    /// Face sizes of the filtered roughnesses, which are the mips of [`RADIANCE`].
+    pub fn mips(&self) -> u32 {
+        self.filtered() / self.per_size.max(1)
+    }
+
+    /// Mip and layer of [`RADIANCE`] that hold filtered roughness `index`, 1 for the least.
+    pub fn place(&self, index: u32) -> (u32, u32) {
+        ((index - 1) / self.per_size, (index - 1) % self.per_size)
+    }
+
+    /// Edge of a face in texels: of the mirror for index 0, of filtered roughness `index` else.
+    pub fn size(&self, index: u32) -> u32 {
+        if index == 0 { self.face_size } else { self.face_size >> (1 + self.place(index).0) }
+    }
+
+    /// Layer of [`RADIANCE`] whose roughnesses the colours of levels have.
+    pub fn colour_layer(&self) -> u32 {
+        self.per_size / 2
+    }
+
+    /// Layers of indicators of one roughness; 0 when one level needs none.
     pub fn indicator_layers(&self) -> u32 {
         (self.levels.len().max(1) as u32 - 1).div_ceil(4)
     }
@@ -189,19 +286,25 @@ impl EnvironmentParams {
         Resource::Buffer { stride: size_of::<EnvironmentUniform>() as u32, count: 1 }
     }
 
-    /// Descriptor of the radiance.
+    /// Descriptor of the mirror.
+    pub fn mirror_resource(&self) -> Resource {
+        let size = self.face_size;
+        Resource::Texture { vk_format: CUBE_VK_FORMAT, width: size, height: size, layers: 1, faces: 6, mips: 1 }
+    }
+
+    /// Descriptor of the filtered radiance.
     pub fn radiance_resource(&self) -> Resource {
-        self.cube(CUBE_VK_FORMAT, 1)
+        self.filtered_resource(CUBE_VK_FORMAT, self.per_size)
     }
 
     /// Descriptor of the indicators.
     pub fn indicators_resource(&self) -> Resource {
-        self.cube(CUBE_VK_FORMAT, self.indicator_layers())
+        self.filtered_resource(CUBE_VK_FORMAT, self.per_size * self.indicator_layers())
     }
 
     /// Descriptor of the level colours.
     pub fn colours_resource(&self) -> Resource {
-        self.cube(COLOURS_VK_FORMAT, self.levels.len().max(1) as u32 - 1)
+        self.filtered_resource(COLOURS_VK_FORMAT, self.levels.len().max(1) as u32 - 1)
     }
 
     /// Descriptor of the albedo table.
@@ -210,8 +313,8 @@ impl EnvironmentParams {
         Resource::Texture { vk_format: ALBEDO_VK_FORMAT, width: size, height: size, layers: 1, faces: 1, mips: 1 }
     }
 
-    fn cube(&self, vk_format: u32, layers: u32) -> Resource {
-        let size = self.face_size;
+    fn filtered_resource(&self, vk_format: u32, layers: u32) -> Resource {
+        let size = self.face_size / 2;
         Resource::Texture { vk_format, width: size, height: size, layers, faces: 6, mips: self.mips() }
     }
 }

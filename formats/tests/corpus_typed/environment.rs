@@ -39,7 +39,7 @@ pub fn cases() -> Vec<Case> {
 
 #[test]
 fn every_way_an_environment_can_be_wrong_is_found() {
-    let edits: [fn(&mut EnvironmentParams); 16] = [
+    let edits: [fn(&mut EnvironmentParams); 20] = [
         |params| params.face_size = 0,
         |params| params.face_size = 3,
         |params| params.face_size = 1 << 31,
@@ -50,11 +50,15 @@ fn every_way_an_environment_can_be_wrong_is_found() {
         |params| params.roughness[1] = f64::NAN,
         |params| params.albedo_size = 0,
         |params| params.radiance_scale = f64::INFINITY,
-        |params| params.max_error = -1.0,
+        |params| params.filter_error = -1.0,
+        |params| params.max_error = Some(0.0),
+        |params| params.per_size = 0,
+        |params| params.per_size = 2,
         |params| params.levels = vec![2.0],
         |params| params.mean_radiance[1] = f64::NAN,
         |params| params.measured.energy = f64::INFINITY,
-        |params| params.measured.mips[1].worst = -1.0,
+        |params| params.measured.texels[1].worst = -1.0,
+        |params| params.measured.reads[1].relative = -1.0,
         |params| params.measured.rounding[0] = f64::NAN,
     ];
     for edit in edits {
@@ -69,19 +73,25 @@ fn every_way_an_environment_can_be_wrong_is_found() {
         assert_eq!(codes(&bytes), [IssueCode::EnvironmentLevels], "{levels:?}");
     }
     // Negative, not a number, too much together, and a component beyond the levels.
-    for (at, bits) in [(0, 0x8400), (1, 0x7e00), (0, 0x3a01), (2, 0x0001), (119, 0x3c00)] {
+    for (at, bits) in [(0, 0x8400), (1, 0x7e00), (0, 0x3a01), (2, 0x0001), (23, 0x3c00)] {
         let bytes = environment_with_indicators(|indicators| indicators[at] = bits);
         assert_eq!(codes(&bytes), [IssueCode::EnvironmentIndicators], "{at} {bits:#x}");
     }
     assert_eq!(codes(&environment_with_indicators(|indicators| indicators[0] = 0x3a00)), []);
-    for at in (0..144).step_by(4) {
+    for at in (0..160).step_by(4) {
         let bytes = environment_with(environment::UNIFORM, |section| section.payload[at] ^= 1);
         assert_eq!(codes(&bytes), [IssueCode::EnvironmentUniform], "byte {at}");
     }
     let sections = || environment_sections(&environment_params(), &environment_indicators(), 0x3c00);
-    let textures = [environment::RADIANCE, environment::INDICATORS, environment::COLOURS, environment::ALBEDO];
+    let textures = [
+        environment::MIRROR,
+        environment::RADIANCE,
+        environment::INDICATORS,
+        environment::COLOURS,
+        environment::ALBEDO,
+    ];
     for kind in textures.into_iter().chain([environment::UNIFORM]) {
         assert_eq!(codes(&pack(without(sections(), kind))), [IssueCode::MissingSection], "{kind}");
     }
-    assert_eq!(codes(&pack(without(sections(), environment::PARAMS))), [IssueCode::OrphanSection; 5]);
+    assert_eq!(codes(&pack(without(sections(), environment::PARAMS))), [IssueCode::OrphanSection; 6]);
 }

@@ -3,10 +3,11 @@
 use glint_formats::Section;
 use glint_formats::environment::{self, EnvironmentParams};
 
-/// Faces of two texels and of one, three levels with colours.
+/// A mirror of two texels, one filtered roughness on faces of one, three levels with colours.
 pub fn environment_params() -> EnvironmentParams {
     EnvironmentParams {
         face_size: 2,
+        per_size: 1,
         kernel: environment::Kernel::Ndf,
         roughness: vec![0.0, 1.0],
         radiance_scale: 1.0,
@@ -18,10 +19,12 @@ pub fn environment_params() -> EnvironmentParams {
         source_height: 4,
         negative_pixels: 1,
         mean_radiance: [1.0, 0.5, 0.25],
-        max_error: 0.005,
+        filter_error: 0.005,
+        max_error: Some(0.01),
         measured: environment::MeasuredError {
-            mips: vec![environment::MeasuredMip { rmse: 0.001, worst: 0.002 }; 2],
-            texels: 16,
+            reads: vec![environment::MeasuredReads { count: 9, relative: 0.01, of_mean: 0.02, worst: 0.03 }; 2],
+            texels: vec![environment::MeasuredTexels { rmse: 0.001, worst: 0.002 }; 2],
+            texels_measured: 16,
             energy: 1e-6,
             second_moment: 0.1,
             rounding: vec![2e-4; 2],
@@ -29,12 +32,12 @@ pub fn environment_params() -> EnvironmentParams {
     }
 }
 
-/// Half floats of the indicators of [`environment_params`]: thirty texels, all ½, ¼, 0, 0.
+/// Half floats of the indicators of [`environment_params`]: six texels, all ½, ¼, 0, 0.
 pub fn environment_indicators() -> Vec<u16> {
-    [0x3800, 0x3400, 0, 0].repeat(30)
+    [0x3800, 0x3400, 0, 0].repeat(6)
 }
 
-/// The six sections of an environment whose radiance and albedo are all `value`.
+/// The seven sections of an environment whose radiance and albedo are all `value`.
 pub fn environment_sections(params: &EnvironmentParams, indicators: &[u16], value: u16) -> Vec<Section> {
     let sound = environment_params();
     let halves = |count: usize| bytemuck::cast_slice(&vec![value; count]).to_vec();
@@ -42,9 +45,10 @@ pub fn environment_sections(params: &EnvironmentParams, indicators: &[u16], valu
     vec![
         Section::parameters(environment::PARAMS, "sky", params),
         Section::buffer(environment::UNIFORM, "sky", &[params.uniform()]),
-        texture(environment::RADIANCE, sound.radiance_resource(), halves(120)),
+        texture(environment::MIRROR, sound.mirror_resource(), halves(96)),
+        texture(environment::RADIANCE, sound.radiance_resource(), halves(24)),
         texture(environment::INDICATORS, sound.indicators_resource(), bytemuck::cast_slice(indicators).to_vec()),
-        texture(environment::COLOURS, sound.colours_resource(), vec![0x80; 240]),
+        texture(environment::COLOURS, sound.colours_resource(), vec![0x80; 48]),
         texture(environment::ALBEDO, sound.albedo_resource(), bytemuck::cast_slice(&[0x3800u16; 16]).to_vec()),
     ]
 }

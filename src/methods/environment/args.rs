@@ -17,7 +17,7 @@ Examples:
 
 /// Bake an HDR environment for image-based lighting of glints
 ///
-/// Radiance and the share of a few radiance levels, filtered with GGX at the roughness of each mip, to an error bound;
+/// Radiance and the share of a few radiance levels, filtered with GGX at several roughnesses of each face size, to an error bound;
 /// and the two areas that depend on view angle and roughness only.
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
@@ -29,14 +29,19 @@ pub struct Args {
     #[arg(short, long, value_name = "PACK")]
     pub output: PathBuf,
 
-    /// Edge of a cube face in texels, a power of two, 4 to 8192
+    /// Edge of a face of the mirror in texels, a power of two, 4 to 8192; faces of the least roughnesses are half as large
     #[arg(long, value_name = "N", default_value = "256", allow_negative_numbers = true, help_heading = "Bake")]
     pub face_size: u32,
-    /// Edge of a face of the last mip, which has roughness 1 [default: 8, or --face-size if smaller]
+    /// Edge of the smallest faces, which have roughnesses up to 1 [default: 16, or half of --face-size if smaller]
     ///
-    /// A larger one interpolates wide lobes better and leaves fewer mips for the others.
+    /// A larger one interpolates wide lobes better and leaves fewer roughnesses.
     #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Bake")]
     pub min_face_size: Option<u32>,
+    /// Filtered roughnesses of each face size, 1 to 8
+    ///
+    /// More of them interpolate better between roughnesses.
+    #[arg(long, value_name = "N", default_value = "4", allow_negative_numbers = true, help_heading = "Bake")]
+    pub roughnesses: u32,
     /// Radiance levels, 1 to 16, or auto: the fewest that meet --max-moment-error
     ///
     /// With 1, lit facets reflect the mean.
@@ -62,16 +67,23 @@ pub struct Args {
     /// Takes 4 bytes a level and texel more.
     #[arg(long, help_heading = "Bake")]
     pub coloured: bool,
-    /// Root mean square error of a mip over its mean, 0.0001 to 0.2; four times that below roughness 0.04
+    /// Relative error of what shaders read, root mean square; three times that below roughness 0.04 [default: none is asked]
+    ///
+    /// When the measured look-ups miss it, nothing is written and the exit code is 6.
+    #[arg(long, value_name = "E", allow_negative_numbers = true, help_heading = "Bake")]
+    pub max_error: Option<f64>,
+    /// Error of filtered texels over the mean, root mean square, 0.0001 to 0.2; four times that below roughness 0.04
     ///
     /// When the measured texels miss it, nothing is written and the exit code is 6.
     #[arg(long, value_name = "E", default_value = "0.005", allow_negative_numbers = true, help_heading = "Bake")]
-    pub max_error: f64,
-    /// Filter: ndf (the paper's, D times masking) or ggx-nl (D times cosine)
-    #[arg(long, value_name = "KERNEL", default_value = "ndf", hide_possible_values = true, help_heading = "Bake")]
+    pub filter_error: f64,
+    /// Filter: ggx-soft (D times a cosine that ends softly), ggx-nl (D times cosine) or ndf (the paper's, D times masking)
+    ///
+    /// Under ndf a sun at the horizon of a lobe shows as an edge.
+    #[arg(long, value_name = "KERNEL", default_value = "ggx-soft", hide_possible_values = true, help_heading = "Bake")]
     pub kernel: KernelArg,
-    /// Texels a mip that are compared with exact sums; 0 for none
-    #[arg(long, value_name = "N", default_value = "16", allow_negative_numbers = true, help_heading = "Bake")]
+    /// Look-ups that are compared with exact sums, and a sixteenth as many texels of each roughness; 0 for none
+    #[arg(long, value_name = "N", default_value = "128", allow_negative_numbers = true, help_heading = "Bake")]
     pub measure: u32,
     /// Compress the pack's sections with Zstandard
     #[arg(long, help_heading = "Bake")]
@@ -107,6 +119,8 @@ pub enum KernelArg {
     Ndf,
     /// The usual one: D · cosine.
     GgxNl,
+    /// D · a cosine that ends softly.
+    GgxSoft,
 }
 
 /// `--level-choice`.
@@ -119,9 +133,9 @@ pub enum LevelChoiceArg {
 }
 
 impl Args {
-    /// Edge of a face of the last mip in texels.
+    /// Edge of the smallest faces in texels.
     fn min_face_size(&self) -> u32 {
-        self.min_face_size.unwrap_or(DEFAULT_MIN_FACE_SIZE.min(self.face_size))
+        self.min_face_size.unwrap_or(DEFAULT_MIN_FACE_SIZE.min(self.face_size / 2))
     }
 
     /// Options of the bake.
@@ -129,6 +143,7 @@ impl Args {
         EnvironmentOptions {
             face_size: self.face_size,
             min_face_size: self.min_face_size(),
+            per_size: self.roughnesses,
             levels: match self.levels {
                 0 => LevelCount::Fewest(self.max_moment_error),
                 count => LevelCount::Exactly(count),
@@ -139,12 +154,14 @@ impl Args {
             },
             floor: self.floor,
             coloured: self.coloured,
+            filter_error: self.filter_error,
             max_error: self.max_error,
             kernel: match self.kernel {
                 KernelArg::Ndf => Kernel::Ndf,
                 KernelArg::GgxNl => Kernel::GgxNl,
+                KernelArg::GgxSoft => Kernel::GgxSoft,
             },
-            measured_texels: self.measure,
+            measured_reads: self.measure,
         }
     }
 
@@ -163,6 +180,7 @@ impl Args {
         let mut options = OptionList::default();
         options.push("face-size", self.face_size);
         options.push("min-face-size", self.min_face_size());
+        options.push("roughnesses", self.roughnesses);
         match self.levels {
             0 => options.push("levels", LEVELS_AUTO),
             count => options.push("levels", count),
@@ -171,7 +189,10 @@ impl Args {
         options.push("floor", self.floor);
         options.push("max-moment-error", self.max_moment_error);
         options.push("coloured", self.coloured);
-        options.push("max-error", self.max_error);
+        if let Some(error) = self.max_error {
+            options.push("max-error", error);
+        }
+        options.push("filter-error", self.filter_error);
         options.push_choice("kernel", &self.kernel);
         options.push("measure", self.measure);
         if let Some(layer) = &self.layer {

@@ -44,13 +44,13 @@ pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Fai
     }
     if args.run.dry_run {
         terminal.say(&format!(
-            "would write {}: {} × {} pixels into faces of {} texels, {} mips, at most {}, with about {} of memory; dry run, \
-             nothing was written",
+            "would write {}: {} × {} pixels into a mirror of {} texels and {} filtered roughnesses, at most {}, with about {} of \
+             memory; dry run, nothing was written",
             args.output.display(),
             loaded.image.width,
             loaded.image.height,
             options.face_size,
-            options.mips(),
+            options.filtered(),
             kib(options.texture_bytes()),
             kib(needed)
         ));
@@ -66,13 +66,14 @@ pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Fai
 
 /// Half floats cannot hold every sun: says where they alone are off by more than was asked.
 fn warn_of_rounding(params: &EnvironmentParams, input: &Path, terminal: Terminal) {
-    for (mip, rounding) in params.measured.rounding.iter().enumerate() {
-        let most = quality::allowed_error(params, mip);
+    for (index, rounding) in params.measured.rounding.iter().enumerate() {
+        let most = quality::allowed_error(params, index);
         if *rounding > most {
             terminal.warn(&format!(
-                "{}: mip {mip}: half floats alone make an error of {rounding:.4} of the mean, more than the {most} asked; \
-                 give a larger --max-error",
-                input.display()
+                "{}: roughness {:.4}: half floats alone make an error of {rounding:.4} of the mean, more than the {most} asked; \
+                 give a larger --filter-error",
+                input.display(),
+                params.roughness[index]
             ));
         }
     }

@@ -2,7 +2,9 @@
 
 use crate::methods::contents::{Item, decode_all};
 use crate::quantities::{kib, percent};
-use glint_formats::environment::{ALBEDO, COLOURS, EnvironmentParams, INDICATORS, PARAMS, RADIANCE, UNIFORM};
+use glint_formats::environment::{
+    ALBEDO, COLOURS, EnvironmentParams, INDICATORS, MIRROR, PARAMS, RADIANCE, SHARP, UNIFORM,
+};
 use glint_formats::{Pack, SectionEntry};
 use serde::Serialize;
 use std::fmt::Write;
@@ -22,7 +24,7 @@ impl EnvironmentInfo {
     /// Describes every environment of a sound pack.
     pub fn all_of(pack: &Pack) -> Vec<EnvironmentInfo> {
         let describe = |(entry, params): (&SectionEntry, EnvironmentParams)| {
-            let bound = [UNIFORM, RADIANCE, INDICATORS, COLOURS, ALBEDO];
+            let bound = [UNIFORM, MIRROR, RADIANCE, INDICATORS, COLOURS, ALBEDO];
             let bytes = bound.iter().filter_map(|kind| Some(pack.find(*kind, &entry.name)?.raw_len)).sum();
             EnvironmentInfo { name: entry.name.clone(), params, texture_bytes: bytes }
         };
@@ -32,26 +34,23 @@ impl EnvironmentInfo {
     /// Size and error on one line.
     fn size_and_error(&self) -> String {
         let params = &self.params;
-        let measured = &params.measured;
-        let worst = |of: fn(&glint_formats::environment::MeasuredMip) -> f64| {
-            measured.mips.iter().skip(1).map(of).fold(0.0, f64::max)
-        };
-        let error = if measured.mips.is_empty() {
-            "error not measured".to_owned()
-        } else {
-            format!(
-                "RMSE {} of the mean at most, worst texel {}",
-                percent(worst(|m| m.rmse)),
-                percent(worst(|m| m.worst))
-            )
+        let read = match params.measured.reads.as_slice() {
+            [sharp, rest] => format!(
+                "read with an error of {} (worst {}), {} (worst {}) where α < {SHARP}",
+                percent(rest.relative),
+                percent(rest.worst),
+                percent(sharp.relative),
+                percent(sharp.worst)
+            ),
+            _ => "error not measured".to_owned(),
         };
         format!(
-            "{}² × 6 × {} mips, {}, {} levels ({} too much variance to take back at run time), {error}",
+            "{}² × 6, {} roughnesses, {}, {} levels ({} too much variance to take back at run time), {read}",
             params.face_size,
-            params.mips(),
+            params.filtered(),
             kib(self.texture_bytes),
             params.levels.len(),
-            percent(measured.second_moment)
+            percent(params.measured.second_moment)
         )
     }
 }
@@ -78,7 +77,18 @@ impl Item for EnvironmentInfo {
         );
         let [r, g, b] = params.mean_radiance;
         let _ = writeln!(out, "  mean         {r:.5}, {g:.5}, {b:.5}");
-        let _ = writeln!(out, "  filter       {}, error {} of the mean asked", kebab(&params.kernel), params.max_error);
+        let _ =
+            writeln!(out, "  filter       {}, error {} of the mean asked", kebab(&params.kernel), params.filter_error);
+        for (reads, alpha) in measured.reads.iter().zip([format!("α < {SHARP}"), format!("α ≥ {SHARP}")]) {
+            let _ = writeln!(
+                out,
+                "  reads        {alpha}: relative error {}, worst {}, RMSE {} of the mean, of {} look-ups",
+                percent(reads.relative),
+                percent(reads.worst),
+                percent(reads.of_mean),
+                reads.count
+            );
+        }
         let _ =
             writeln!(out, "  storage      f16, radiance over {}, {}", params.radiance_scale, kib(self.texture_bytes));
         let _ = writeln!(out, "  energy       {:.1e} from that of the source", measured.energy);
@@ -90,19 +100,19 @@ impl Item for EnvironmentInfo {
             "  ⟨L²⟩         of levels {} too high on average, exact in the alpha of radiance",
             percent(measured.second_moment)
         );
-        let _ = writeln!(out, "  mips             face     roughness         RMSE  worst texel     rounding");
-        for (mip, alpha) in params.roughness.iter().enumerate() {
+        let _ = writeln!(out, "  roughnesses      face     roughness         RMSE  worst texel     rounding");
+        for (index, alpha) in params.roughness.iter().enumerate() {
             let error = measured
-                .mips
-                .get(mip)
+                .texels
+                .get(index)
                 .map_or((String::from("-"), String::from("-")), |m| (percent(m.rmse), percent(m.worst)));
             let _ = writeln!(
                 out,
-                "    {mip:<10} {:>6} {alpha:>13.5} {:>12} {:>12} {:>12}",
-                params.face_size >> mip,
+                "    {index:<10} {:>6} {alpha:>13.5} {:>12} {:>12} {:>12}",
+                params.size(index as u32),
                 error.0,
                 error.1,
-                measured.rounding.get(mip).map_or(String::from("-"), |rounding| percent(*rounding))
+                measured.rounding.get(index).map_or(String::from("-"), |rounding| percent(*rounding))
             );
         }
         out

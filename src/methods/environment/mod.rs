@@ -55,7 +55,7 @@ impl Method for Environment {
             product: "environments",
             light: "environment light",
             is_lit: |lights| lights.environment,
-            measure: "RMSE of radiance",
+            measure: "relative error of radiance",
         })
     }
 }

@@ -1,12 +1,12 @@
-//! Pictures of environments: faces of cubes beside each other, +X −X +Y −Y +Z −Z, a row a mip or a level.
+//! Pictures of environments: faces of cubes beside each other, +X −X +Y −Y +Z −Z, a row a roughness or a level.
 
 use crate::canvas::Canvas;
 use crate::exit::Failure;
-use crate::methods::plots::{WritePlot, payload, picture_of, stems};
+use crate::methods::plots::{WritePlot, payload, stems};
 use crate::preview::tone;
 use glam::{DVec3, Vec3};
 use glint_formats::Pack;
-use glint_formats::environment::{COLOURS, INDICATORS, PARAMS, RADIANCE};
+use glint_formats::environment::{COLOURS, INDICATORS, MIRROR, PARAMS, RADIANCE};
 use glint_formats::export::Texels;
 
 const BACKGROUND: [u8; 3] = [16, 16, 20];
@@ -14,45 +14,56 @@ const BACKGROUND: [u8; 3] = [16, 16, 20];
 const FACE: u32 = 128;
 /// Between faces.
 const GAP: u32 = 2;
-/// Most rows; further mips are almost of one colour.
+/// Most rows.
 const MAX_ROWS: u32 = 10;
 /// What the mean radiance of the sphere is exposed to: a middle grey.
 const MIDDLE: f32 = 0.3;
 
-/// Tone-mapped radiance, a row a mip, all exposed alike.
-fn radiance(texels: &Texels) -> Canvas {
-    let colour = |mip, face, i, j| {
-        let image = texels.texture.image(mip, 0, face);
-        let [r, g, b, _] = texels.at(&image, i, j);
+/// Mip and layer of filtered roughness `index`, 0 for the least, of so many a face size.
+fn place(index: u32, per_size: u32) -> (u32, u32) {
+    (index / per_size, index % per_size)
+}
+
+/// Tone-mapped radiance, the mirror on top, then a row a roughness, all exposed alike.
+fn radiance(mirror: &Texels, filtered: &Texels) -> Canvas {
+    let colour = |texels: &Texels, mip, layer, face, i, j| {
+        let [r, g, b, _] = texels.at(&texels.texture.image(mip, layer, face), i, j);
         DVec3::new(r, g, b)
     };
-    // The last mip is the blurriest: its mean is close to that of the sphere.
-    let last = texels.texture.mips - 1;
-    let edge = texels.texture.size(last).0;
+    let (per_size, mips) = (filtered.texture.layers, filtered.texture.mips);
+    // The last roughness is the blurriest: its mean is close to that of the sphere.
+    let edge = filtered.texture.size(mips - 1).0;
     let all = (0..6).flat_map(|face| (0..edge * edge).map(move |at| (face, at % edge, at / edge)));
-    let mean = all.map(|(face, i, j)| colour(last, face, i, j)).sum::<DVec3>() / f64::from(6 * edge * edge);
-    let exposure = MIDDLE / (mean.element_sum() as f32 / 3.0).max(1e-12);
-    let rows = texels.texture.mips.min(MAX_ROWS);
-    sheet(6, rows, |row, face| {
-        (texels.texture.size(row).0, move |i, j| tone::pixel(colour(row, face, i, j).as_vec3(), exposure))
+    let mean = all.map(|(face, i, j)| colour(filtered, mips - 1, per_size - 1, face, i, j)).sum::<DVec3>();
+    let exposure = MIDDLE / (mean.element_sum() as f32 / (18 * edge * edge) as f32).max(1e-12);
+    let roughnesses = per_size * mips;
+    let rows = roughnesses.min(MAX_ROWS - 1);
+    sheet(6, 1 + rows, |row, face| {
+        let (texels, (mip, layer)) = match row {
+            0 => (mirror, (0, 0)),
+            // The first and the last, and others evenly between them.
+            _ => (filtered, place((row - 1) * (roughnesses - 1) / (rows - 1).max(1), per_size)),
+        };
+        let pixel = move |i, j| tone::pixel(colour(texels, mip, layer, face, i, j).as_vec3(), exposure);
+        (texels.texture.size(mip).0, pixel)
     })
 }
 
-/// Shares of the levels, the darkest on top: white is the whole. Left the first mip, right one of middling roughness.
-/// Coloured levels are tinted as they are.
-fn levels(texels: &Texels, colours: Option<&Texels>) -> Canvas {
+/// Shares of the levels, the darkest on top: white is the whole. Left the roughness that has colours of the largest faces, right that
+/// of faces of middling size. Coloured levels are tinted as they are.
+fn levels(texels: &Texels, colours: Option<&Texels>, per_size: u32) -> Canvas {
     let texture = texels.texture;
+    let (layers, shown) = (texture.layers / per_size, per_size / 2);
     let share = |level: u32, mip, face, i, j| {
         let of = |level: u32| {
-            let image = texture.image(mip, (level - 1) / 4, face);
+            let image = texture.image(mip, shown * layers + (level - 1) / 4, face);
             texels.at(&image, i, j)[((level - 1) % 4) as usize]
         };
         let others = |count: u32| (1..count).map(of).sum::<f64>();
-        if level == 0 { 1.0 - others(4 * texture.layers + 1) } else { of(level) }
+        if level == 0 { 1.0 - others(4 * layers + 1) } else { of(level) }
     };
-    let count = level_count(texels);
     let mips = [0, texture.mips / 2];
-    sheet(12, count.min(MAX_ROWS), |level, column| {
+    sheet(12, level_count(texels, layers).min(MAX_ROWS), |level, column| {
         let (mip, face) = (mips[(column / 6) as usize], column % 6);
         let tint = move |i, j| match colours {
             Some(colours) if level > 0 => {
@@ -69,8 +80,8 @@ fn levels(texels: &Texels, colours: Option<&Texels>) -> Canvas {
     })
 }
 
-/// Levels that some texel of the first mip has a share of, at least two.
-fn level_count(texels: &Texels) -> u32 {
+/// Levels that some texel of the least roughness has a share of, at least two. Each roughness has so many layers.
+fn level_count(texels: &Texels, layers: u32) -> u32 {
     let used = |layer: u32, component: usize| {
         (0..6).any(|face| {
             let image = texels.texture.image(0, layer, face);
@@ -78,8 +89,7 @@ fn level_count(texels: &Texels) -> u32 {
                 .any(|at| texels.at(&image, at % image.width, at / image.width)[component] > 0.0)
         })
     };
-    let levels = 4 * texels.texture.layers;
-    (1..=levels).rev().find(|level| used((level - 1) / 4, ((level - 1) % 4) as usize)).unwrap_or(1) + 1
+    (1..=4 * layers).rev().find(|level| used((level - 1) / 4, ((level - 1) % 4) as usize)).unwrap_or(1) + 1
 }
 
 /// A sheet of faces. `face` gives a face's edge in texels and the colour of each.
@@ -102,12 +112,14 @@ fn sheet<P: Fn(u32, u32) -> [u8; 3]>(columns: u32, rows: u32, face: impl Fn(u32,
 /// Those of `write`.
 pub fn write_all(pack: &Pack, write: &mut WritePlot<'_>) -> Result<(), Failure> {
     for (stem, name) in stems(pack, PARAMS) {
-        if let Some(picture) = picture_of(pack, RADIANCE, name, radiance) {
-            write(format!("{stem}-radiance.png"), picture.to_png())?;
-        }
-        let colours = payload(pack, COLOURS, name);
-        let colours = colours.as_ref().and_then(|(texture, bytes)| Texels::new(*texture, bytes));
-        if let Some(picture) = picture_of(pack, INDICATORS, name, |texels| levels(texels, colours.as_ref())) {
+        let [mirror, filtered, indicators, colours] =
+            [MIRROR, RADIANCE, INDICATORS, COLOURS].map(|kind| payload(pack, kind, name));
+        let [mirror, filtered, indicators, colours] = [&mirror, &filtered, &indicators, &colours]
+            .map(|found| found.as_ref().and_then(|(texture, bytes)| Texels::new(*texture, bytes)));
+        let (Some(mirror), Some(filtered)) = (mirror, filtered) else { continue };
+        write(format!("{stem}-radiance.png"), radiance(&mirror, &filtered).to_png())?;
+        if let Some(indicators) = indicators {
+            let picture = levels(&indicators, colours.as_ref(), filtered.texture.layers);
             write(format!("{stem}-levels.png"), picture.to_png())?;
         }
     }

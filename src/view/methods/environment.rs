@@ -42,7 +42,14 @@ pub fn constants(params: &EnvironmentParams) -> Vec<(&'static str, f64)> {
 /// # Errors
 /// Those of [`bind_sections`].
 pub fn empty(gpu: &Gpu) -> Result<Resources, GpuError> {
-    let uniform = EnvironmentUniform { levels: 1, mips: 1, radiance_scale: 1.0, ..EnvironmentUniform::default() };
+    let uniform = EnvironmentUniform {
+        levels: 1,
+        radiance_scale: 1.0,
+        roughnesses: 1.0,
+        per_size: 1.0,
+        first_alpha: 1.0,
+        ..EnvironmentUniform::default()
+    };
     let one = Resource::Texture { vk_format: ALBEDO_VK_FORMAT, width: 1, height: 1, layers: 1, faces: 1, mips: 1 };
     let albedo = bytemuck::cast_slice(&[f16::ONE.to_bits(); 4]).to_vec();
     let sections = [Section::buffer(UNIFORM, "", &[uniform]), Section::texture(ALBEDO, "", one, albedo)];

@@ -5,20 +5,28 @@
 
 // Section ENUB.
 @group(2) @binding(0) var<uniform> environment: GlintEnvironment;
-// Section ENRA: RGBA16Float, all mips.
-@group(2) @binding(1) var environment_radiance: texture_cube<f32>;
-// Section ENIN: RGBA16Float, four levels a layer; one black texel if there is one level.
-@group(2) @binding(2) var environment_indicators: texture_cube_array<f32>;
+// Section ENMI: RGBA16Float.
+@group(2) @binding(1) var environment_mirror: texture_cube<f32>;
+// Section ENRA: RGBA16Float, a roughness a layer, a face size a mip.
+@group(2) @binding(2) var environment_radiance: texture_cube_array<f32>;
+// Section ENIN: RGBA16Float, four levels a layer, the layers of each roughness together; one black texel if there is one level.
+@group(2) @binding(3) var environment_indicators: texture_cube_array<f32>;
 // Section ENCO: RGB9E5Ufloat, a level a layer; one black texel without colours.
-@group(2) @binding(3) var environment_colours: texture_cube_array<f32>;
+@group(2) @binding(4) var environment_colours: texture_cube_array<f32>;
 // Section ENAL: RGBA16Float.
-@group(2) @binding(4) var environment_albedo: texture_2d<f32>;
+@group(2) @binding(5) var environment_albedo: texture_2d<f32>;
 // Filters between texels and mips, clamps.
-@group(2) @binding(5) var environment_sampler: sampler;
+@group(2) @binding(6) var environment_sampler: sampler;
 
-fn glint_environment_radiance_at(direction: vec3f, mip: f32) -> vec4f {
+fn glint_environment_mirror_at(direction: vec3f) -> vec4f {
     bound_loads += 1u;
-    return textureSampleLevel(environment_radiance, environment_sampler, direction, mip) * environment.radiance_scale;
+    return textureSampleLevel(environment_mirror, environment_sampler, direction, 0.0) * environment.radiance_scale;
+}
+
+fn glint_environment_radiance_at(layer: u32, direction: vec3f, mip: f32) -> vec4f {
+    bound_loads += 1u;
+    return textureSampleLevel(environment_radiance, environment_sampler, direction, layer, mip)
+        * environment.radiance_scale;
 }
 
 fn glint_environment_indicators_at(layer: u32, direction: vec3f, mip: f32) -> vec4f {

@@ -7,10 +7,11 @@
 
 @group(2) @binding(0) var<uniform> environment: GlintEnvironment;
 // The same sections; faces of the cubes are layers.
-@group(2) @binding(1) var environment_radiance: texture_2d_array<f32>;
-@group(2) @binding(2) var environment_indicators: texture_2d_array<f32>;
-@group(2) @binding(3) var environment_colours: texture_2d_array<f32>;
-@group(2) @binding(4) var environment_albedo: texture_2d<f32>;
+@group(2) @binding(1) var environment_mirror: texture_2d_array<f32>;
+@group(2) @binding(2) var environment_radiance: texture_2d_array<f32>;
+@group(2) @binding(3) var environment_indicators: texture_2d_array<f32>;
+@group(2) @binding(4) var environment_colours: texture_2d_array<f32>;
+@group(2) @binding(5) var environment_albedo: texture_2d<f32>;
 
 // Column, row, face.
 struct EnvironmentCubeTaps {
@@ -85,20 +86,34 @@ fn environment_mip_size(mip: i32) -> i32 {
     return i32(textureDimensions(environment_radiance).x) >> u32(mip);
 }
 
-fn environment_radiance_mip(direction: vec3f, mip: i32) -> vec4f {
-    let taps = environment_cube_taps(direction, environment_mip_size(mip));
-    return taps.weights.x * textureLoad(environment_radiance, taps.a.xy, taps.a.z, mip)
-        + taps.weights.y * textureLoad(environment_radiance, taps.b.xy, taps.b.z, mip)
-        + taps.weights.z * textureLoad(environment_radiance, taps.c.xy, taps.c.z, mip)
-        + taps.weights.w * textureLoad(environment_radiance, taps.d.xy, taps.d.z, mip);
+fn glint_environment_mirror_at(direction: vec3f) -> vec4f {
+    let taps = environment_cube_taps(direction, i32(textureDimensions(environment_mirror).x));
+    let sum = taps.weights.x * textureLoad(environment_mirror, taps.a.xy, taps.a.z, 0)
+        + taps.weights.y * textureLoad(environment_mirror, taps.b.xy, taps.b.z, 0)
+        + taps.weights.z * textureLoad(environment_mirror, taps.c.xy, taps.c.z, 0)
+        + taps.weights.w * textureLoad(environment_mirror, taps.d.xy, taps.d.z, 0);
+    return sum * environment.radiance_scale;
 }
 
-fn environment_indicators_mip(layer: i32, direction: vec3f, mip: i32) -> vec4f {
-    let taps = environment_cube_taps(direction, environment_mip_size(mip));
-    return taps.weights.x * textureLoad(environment_indicators, taps.a.xy, 6 * layer + taps.a.z, mip)
-        + taps.weights.y * textureLoad(environment_indicators, taps.b.xy, 6 * layer + taps.b.z, mip)
-        + taps.weights.z * textureLoad(environment_indicators, taps.c.xy, 6 * layer + taps.c.z, mip)
-        + taps.weights.w * textureLoad(environment_indicators, taps.d.xy, 6 * layer + taps.d.z, mip);
+fn glint_environment_radiance_at(layer: u32, direction: vec3f, mip: f32) -> vec4f {
+    let level = i32(mip);
+    let first = 6 * i32(layer);
+    let taps = environment_cube_taps(direction, environment_mip_size(level));
+    let sum = taps.weights.x * textureLoad(environment_radiance, taps.a.xy, first + taps.a.z, level)
+        + taps.weights.y * textureLoad(environment_radiance, taps.b.xy, first + taps.b.z, level)
+        + taps.weights.z * textureLoad(environment_radiance, taps.c.xy, first + taps.c.z, level)
+        + taps.weights.w * textureLoad(environment_radiance, taps.d.xy, first + taps.d.z, level);
+    return sum * environment.radiance_scale;
+}
+
+fn glint_environment_indicators_at(layer: u32, direction: vec3f, mip: f32) -> vec4f {
+    let level = i32(mip);
+    let first = 6 * i32(layer);
+    let taps = environment_cube_taps(direction, environment_mip_size(level));
+    return taps.weights.x * textureLoad(environment_indicators, taps.a.xy, first + taps.a.z, level)
+        + taps.weights.y * textureLoad(environment_indicators, taps.b.xy, first + taps.b.z, level)
+        + taps.weights.z * textureLoad(environment_indicators, taps.c.xy, first + taps.c.z, level)
+        + taps.weights.w * textureLoad(environment_indicators, taps.d.xy, first + taps.d.z, level);
 }
 
 fn environment_colour_mip(layer: i32, direction: vec3f, mip: i32) -> vec3f {
@@ -109,28 +124,11 @@ fn environment_colour_mip(layer: i32, direction: vec3f, mip: i32) -> vec3f {
         + taps.weights.w * textureLoad(environment_colours, taps.d.xy, 6 * layer + taps.d.z, mip).rgb;
 }
 
-fn environment_next_mip(mip: f32) -> i32 {
-    return min(i32(mip) + 1, i32(environment.mips) - 1);
-}
-
-fn glint_environment_radiance_at(direction: vec3f, mip: f32) -> vec4f {
-    let share = fract(mip);
-    let low = environment_radiance_mip(direction, i32(mip));
-    let high = environment_radiance_mip(direction, environment_next_mip(mip));
-    return ((1.0 - share) * low + share * high) * environment.radiance_scale;
-}
-
-fn glint_environment_indicators_at(layer: u32, direction: vec3f, mip: f32) -> vec4f {
-    let share = fract(mip);
-    let low = environment_indicators_mip(i32(layer), direction, i32(mip));
-    let high = environment_indicators_mip(i32(layer), direction, environment_next_mip(mip));
-    return (1.0 - share) * low + share * high;
-}
-
 fn glint_environment_colour_at(layer: u32, direction: vec3f, mip: f32) -> vec3f {
     let share = fract(mip);
     let low = environment_colour_mip(i32(layer), direction, i32(mip));
-    let high = environment_colour_mip(i32(layer), direction, environment_next_mip(mip));
+    let last = i32(environment.roughnesses / environment.per_size) - 1;
+    let high = environment_colour_mip(i32(layer), direction, min(i32(mip) + 1, last));
     return (1.0 - share) * low + share * high;
 }
 

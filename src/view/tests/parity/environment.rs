@@ -19,7 +19,7 @@ use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOpt
 use glint_bake_core::progress::Silent;
 use glint_formats::binding::{Binding, View};
 use glint_formats::environment::{
-    ALBEDO, BINDINGS, COLOURS, EnvironmentUniform, INDICATORS, MAX_LEVELS, RADIANCE, UNIFORM,
+    ALBEDO, BINDINGS, COLOURS, EnvironmentUniform, INDICATORS, MAX_LEVELS, MIRROR, RADIANCE, UNIFORM,
 };
 use glint_formats::{Codec, Wrap};
 use glint_shaders::assert_same_layout;
@@ -31,6 +31,7 @@ use std::f64::consts::PI;
 /// The bind group of `bind_environment_exact.wgsl`.
 const EXACT_BINDINGS: &[Binding] = &[
     Binding::Uniform(UNIFORM),
+    Binding::Texture(MIRROR, View::Float2dArray),
     Binding::Texture(RADIANCE, View::Float2dArray),
     Binding::Texture(INDICATORS, View::Float2dArray),
     Binding::Texture(COLOURS, View::Float2dArray),
@@ -110,10 +111,11 @@ fn baked_to(min_face_size: u32, image: &EnvironmentImage, face_size: u32, levels
     let options = EnvironmentOptions {
         face_size,
         min_face_size,
+        per_size: 2,
         levels: LevelCount::Exactly(levels),
         coloured,
-        measured_texels: 0,
-        max_error: 0.02,
+        measured_reads: 0,
+        filter_error: 0.02,
         ..EnvironmentOptions::default()
     };
     bake(image, &options, &Silent).unwrap()
@@ -273,7 +275,7 @@ fn a_real_environment_agrees_too() {
 }
 
 /// A sampler filters with weights of 8 bits or more, off by up to 1/512 of the difference of two texels in each of three
-/// directions, and has its own rule at the corners of a cube. Faces are 64 to 8 texels, as a bake has them by default.
+/// directions, and has its own rule at the corners of a cube. Filtered faces are 32 to 8 texels.
 #[test]
 fn a_sampler_reads_what_is_read_texel_by_texel() {
     let Some(gpu) = gpu() else { return };
@@ -309,9 +311,13 @@ fn the_uniform_lies_as_the_shader_reads_it() {
         level,
         present,
         levels,
-        mips,
         coloured,
-        radiance_scale
+        radiance_scale,
+        roughnesses,
+        per_size,
+        first_alpha,
+        inverse_log,
+        bend
     );
 }
 

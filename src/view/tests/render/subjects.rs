@@ -90,7 +90,7 @@ fn environment_pack() -> Pack {
         }
     }
     let image = EnvironmentImage::new(2 * HEIGHT, HEIGHT, pixels).unwrap();
-    let options = EnvironmentOptions { face_size: 32, measured_texels: 0, ..EnvironmentOptions::default() };
+    let options = EnvironmentOptions { face_size: 32, measured_reads: 0, ..EnvironmentOptions::default() };
     let baked = environment::bake(&image, &options, &Silent).unwrap();
     pack(environment::sections::to_sections("lamps", &baked, Codec::None))
 }
