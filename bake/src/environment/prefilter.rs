@@ -308,8 +308,7 @@ impl Bound {
         // is allowed, only one of the texel.
         let toe = SOFT_TOE as f32;
         let kink = match self.kernel {
-            // Bent, not broken, but in more blocks.
-            Kernel::GgxSoft if near2 < 2.0 * (1.0 + toe) && far2 > 2.0 * (1.0 - toe) => 1.5 / toe * variance,
+            Kernel::GgxSoft if near2 < 2.0 * (1.0 + toe) && far2 > 2.0 * (1.0 - toe) => 0.25 / toe * variance,
             Kernel::Ndf | Kernel::GgxNl if near2 < 2.0 && far2 > 2.0 => 0.4 * edge_slope * variance.sqrt(),
             _ => 0.0,
         };
@@ -336,7 +335,8 @@ impl Bound {
         let over = (relative / allowance.of_block).min(of_texel);
         let cut =
             if light > 0.0 { peak * kink * (block.light / light).max(block.square / square) / OF_KINK } else { 0.0 };
-        // Curvature's error falls with the square of the parts' size, the kink's with the size.
+        // Curvature's error falls with the square of the parts' size, a kink's with the size.
+        let cut = if self.kernel == Kernel::GgxSoft { cut.sqrt() } else { cut };
         over.sqrt().max(cut).max(1.01)
     }
 
