@@ -71,7 +71,7 @@ fn check_parameters(params: &EnvironmentParams) -> Result<(), String> {
         return Err(format!("expected 1 to {MAX_PER_SIZE} roughnesses of a face size, found {}", params.per_size));
     }
     let (filtered, most) = (params.roughness.len().saturating_sub(1), size.ilog2() * params.per_size);
-    if filtered == 0 || filtered > most as usize || params.filtered() % params.per_size != 0 {
+    if filtered == 0 || filtered > most as usize || !params.filtered().is_multiple_of(params.per_size) {
         return Err(format!(
             "expected a roughness of 0 and {} to {most} others, {0} of each face size, found {} in all",
             params.per_size,
