@@ -6,7 +6,7 @@ use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::textures::paper::{ClosedForm, moments};
 use glint_bake_core::textures::quality::{albedo, measure, probes};
-use glint_bake_core::textures::reference::{Facet, density, facet, facets};
+use glint_bake_core::textures::reference::{Facet, Facets, density, facet, facets, radiance};
 use glint_bake_core::textures::{Level, Roughness, Textures, TexturesOptions, bake};
 use glint_formats::Wrap;
 
@@ -72,6 +72,27 @@ fn facets_are_those_of_the_bilinear_surface() {
     let all = facets(&map, &roughness, DVec2::new(2.0, 2.0), DVec2::splat(4.0), 64);
     let mean = all.iter().map(|facet| facet.normal.x).sum::<f64>() / all.len() as f64;
     assert!((mean - 0.15).abs() < 2e-3, "{mean}");
+}
+
+#[test]
+fn many_facets_at_once_are_the_mean_of_each() {
+    let map = noise(8, 8, 0.9);
+    let roughness = Roughness::Map((0..64).map(|k| k as f32 / 63.0).collect());
+    let all = facets(&map, &roughness, DVec2::new(3.0, 4.0), DVec2::splat(8.0), 16);
+    let many = Facets::new(&all);
+    for k in 0..50 {
+        let t = 0.5 + f64::from(k);
+        let vector = |polar: f64, azimuth: f64| {
+            DVec3::new(polar.sin() * azimuth.cos(), polar.sin() * azimuth.sin(), polar.cos())
+        };
+        let (view, light) = (vector(0.03 * t, 1.7 * t), vector(1.5 - 0.02 * t, 2.3 * t));
+        let half = (view + light).normalize();
+        let mean = |of: &dyn Fn(&Facet) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
+        let shown = mean(&|of| radiance(of, view, light));
+        let dense = mean(&|of| density(of, half) * of.normal.dot(half).max(0.0));
+        assert!((many.radiance(view, light) - shown).abs() < 1e-12 * shown, "{k}");
+        assert!((many.density(half) - dense).abs() < 1e-12 * dense, "{k}");
+    }
 }
 
 #[test]
@@ -206,7 +227,7 @@ fn bad_roughness_and_small_memory_are_refused() {
     assert!(what.contains("texel (2, 1)"), "{what}");
     let BakeError::BadInput(what) = refused(&Roughness::Map(vec![0.5; 15]), &usual) else { panic!() };
     assert!(what.contains("16 texels") && what.contains("found 15"), "{what}");
-    let small = TexturesOptions { max_memory: 100 };
+    let small = TexturesOptions { max_memory: 100, ..usual };
     let BakeError::LimitExceeded(what) = refused(&Roughness::Constant(0.5), &small) else { panic!() };
     assert!(what.starts_with("max-memory: "), "{what}");
 }

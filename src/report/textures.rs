@@ -7,14 +7,14 @@ use super::table::Table;
 use crate::blocks;
 use crate::exit::{Exit, Failure};
 use crate::plot::{Axis, Colour, Figure, Panel, Series};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::textures::levels::sizes;
 use glint_bake_core::textures::paper::{ClosedForm, moments};
 use glint_bake_core::textures::quality::{Sums, VIEWS, measure as highlights, probes};
-use glint_bake_core::textures::reference::Facet;
-use glint_bake_core::textures::{Level, Roughness, TexturesOptions, bake};
+use glint_bake_core::textures::reference::{Facet, Stretched};
+use glint_bake_core::textures::{Axes, Level, Roughness, TexturesOptions, bake};
 use glint_formats::export::blocks::Blocks;
 use std::process::Command;
 
@@ -43,6 +43,8 @@ const LIGHTS: u32 = 192;
 /// Methods before the closed forms: ours, ours as 8 bits hold it, ours in blocks.
 const OURS: usize = 3;
 const METHODS: usize = OURS + ClosedForm::ALL.len();
+/// What engines take the axes of anisotropic highlights from.
+const AXES: [(Axes, &str); 2] = [(Axes::Normal, "anisotropic, axes of the normal"), (Axes::Surface, "of the surface")];
 /// Errors below this are of maps that are flat to a mip; ratios of them say nothing that could be seen.
 const FLAT: f64 = 0.005;
 
@@ -52,6 +54,8 @@ struct Row {
     roughness: f32,
     mip: u32,
     sums: [Sums; METHODS],
+    /// Ours with anisotropy, by [`AXES`].
+    stretched: [f64; 2],
 }
 
 impl Row {
@@ -102,6 +106,7 @@ pub fn measure(settings: &Settings) -> Result<Document, Failure> {
         LIGHTS
     ));
     summary(&mut document, &rows);
+    anisotropy(&mut document, &rows, settings);
     cost(&mut document, settings)?;
     document.heading(2, "Every mip");
     document.paragraph(
@@ -122,6 +127,11 @@ fn places(settings: &Settings) -> u32 {
 fn of_map(name: &'static str, map: &NormalMap, roughness: f32, settings: &Settings) -> Result<Vec<Row>, Failure> {
     let material = Roughness::Constant(roughness);
     let textures = bake(map, &material, &TexturesOptions::default(), &Silent)?;
+    let stretched = AXES.map(|(anisotropy, _)| {
+        bake(map, &material, &TexturesOptions { anisotropy: Some(anisotropy), ..TexturesOptions::default() }, &Silent)
+    });
+    let [normal, surface] = stretched;
+    let stretched = [normal?, surface?];
     let all = sizes(map.width, map.height);
     let mips = 1..=settings.pick(LAST_MIP, 4).min(all.len() as u32 - 1);
     let row = |mip: u32| {
@@ -135,7 +145,11 @@ fn of_map(name: &'static str, map: &NormalMap, roughness: f32, settings: &Settin
         for (sums, form) in sums[OURS..].iter_mut().zip(ClosedForm::ALL) {
             *sums = highlights(&probes, |i, j| form.texel(&moments(map, &material, all[mip as usize], (i, j))));
         }
-        Row { map: name, roughness, mip, sums }
+        let stretched = [0, 1].map(|k: usize| {
+            let level = &stretched[k].levels[mip as usize - 1];
+            highlights(&probes, |i, j| stretched_texel(level, AXES[k].0, i, j)).error()
+        });
+        Row { map: name, roughness, mip, sums, stretched }
     };
     Ok(mips.map(row).collect())
 }
@@ -145,6 +159,13 @@ fn texel(level: &Level, i: u32, j: u32) -> Facet {
     let [x, y] = level.normals[at].map(f64::from);
     let z = (1.0 - x * x - y * y).max(0.0).sqrt();
     Facet { normal: DVec3::new(x, y, z).normalize(), alpha: f64::from(level.alphas[at]) }
+}
+
+fn stretched_texel(level: &Level, axes: Axes, i: u32, j: u32) -> Stretched {
+    let Facet { normal, alpha } = texel(level, i, j);
+    let of = level.anisotropies[(j * level.width + i) as usize];
+    let direction = DVec2::from_array(of.direction.map(f64::from));
+    Stretched { normal, roughness: alpha.sqrt(), strength: f64::from(of.strength), direction, axes }
 }
 
 /// A texel as files of 8 bits a channel hold it.
@@ -258,6 +279,33 @@ fn table<'a>(rows: impl Iterator<Item = &'a Row>) -> Table {
         ));
     }
     table
+}
+
+/// Errors with anisotropy by map and mip.
+fn anisotropy(document: &mut Document, rows: &[Row], settings: &Settings) {
+    document.heading(2, "Anisotropy");
+    document.paragraph(
+        "Errors with `--anisotropy`, means over roughness. Engines that take the axes of the lobe from the surface, as the code of \
+         KHR_materials_anisotropy does, show the highlight around the surface's normal: where mean normals of a mip lean, no texture helps.",
+    );
+    let last = rows.iter().map(|row| row.mip).max().unwrap_or(1);
+    let mips: Vec<String> = (1..=last).map(|mip| format!("mip {mip}")).collect();
+    let mut table = Table::new(2, &format!("map | ours | all mips | {}", mips.join(" | ")));
+    for (name, _) in maps(settings) {
+        let mut add = |label: &str, error: &dyn Fn(&Row) -> f64| {
+            let mean = |is: &dyn Fn(&Row) -> bool| {
+                let some: Vec<f64> = rows.iter().filter(|row| row.map == name && is(row)).map(error).collect();
+                format!("{:.3}", some.iter().sum::<f64>() / some.len() as f64)
+            };
+            let by_mip: Vec<String> = (1..=last).map(|mip| mean(&|row| row.mip == mip)).collect();
+            table.row(format!("{name} | {label} | {} | {}", mean(&|_| true), by_mip.join(" | ")));
+        };
+        add("round", &|row| row.errors()[0]);
+        for (k, (_, label)) in AXES.iter().enumerate() {
+            add(label, &|row| row.stretched[k]);
+        }
+    }
+    document.table(&table);
 }
 
 /// Processor time and memory of the whole command for a large map.

@@ -92,6 +92,33 @@ fn targets_have_their_green_and_their_channels() {
     assert!(png(folder.path(), "n_normal.mip0.png").to_rgba8().get_pixel(0, 0).0[1] < 95);
 }
 
+/// A slope that comes and goes along u: highlights are wider along u, and both ways of storing that say the same two widths.
+#[test]
+fn anisotropy_is_stored_as_the_engine_combines_it() {
+    let folder = folder();
+    let widths = |target: &str| {
+        let flags =
+            ["--anisotropy", "normal", "--target", target, "--roughness", "0.5", "--format", "png", "--bits", "16"];
+        textures(folder.path(), &flags).ok();
+        let texel = |file: &str| png(folder.path(), file).to_rgb16().get_pixel(0, 0).0.map(|v| f64::from(v) / 65535.0);
+        let ([x, y, strength], [_, roughness, _]) = (texel("n_anisotropy.mip2.png"), texel("n_orm.mip2.png"));
+        assert!(x > 0.98 && (0.4..0.6).contains(&y) && strength > 0.05, "{target}: {x} {y} {strength}");
+        let finest = texel("n_anisotropy.mip0.png");
+        assert!(finest[2] == 0.0 && finest[0] > 0.9, "the map itself is not stretched: {finest:?}");
+        let alpha = roughness * roughness;
+        match target {
+            "filament" => [alpha * (1.0 + strength), alpha * (1.0 - strength)],
+            _ => [alpha + (1.0 - alpha) * strength * strength, alpha],
+        }
+    };
+    let [along, across] = widths("gltf");
+    assert!(across >= 0.249 && along > 1.05 * across, "{along} {across}");
+    for target in ["filament", "bevy"] {
+        let found = widths(target);
+        assert!((found[0] - along).abs() < 1e-3 && (found[1] - across).abs() < 1e-3, "{target}: {found:?}");
+    }
+}
+
 #[test]
 fn roughness_is_read_and_stored_as_it_is_said() {
     let folder = folder();
@@ -265,6 +292,8 @@ fn a_dry_run_and_refusals_write_nothing() {
         (&["--bits", "12"], 2, "expected 8 or 16, found 12"),
         (&["--name", "a/b"], 2, "--name"),
         (&["--target", "blender"], 2, "blender"),
+        (&["--anisotropy", "normal", "--target", "unreal"], 2, "--anisotropy: --target unreal"),
+        (&["--anisotropy", "view"], 2, "--anisotropy"),
         (&["--depfile", "-"], 2, "--depfile"),
         (&["--depfile", "n.png"], 2, "is an input as well"),
         (&["--max-memory", "1K"], 6, "--max-memory"),

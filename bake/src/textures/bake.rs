@@ -3,10 +3,11 @@
 //! A texel's normal is the mean over its box, renormalised, as engines make it, unless another is worth it; normal and roughness are
 //! fitted ([`super::fit`]) to facets of the bilinear surface in the same box.
 
-use super::baked::{Level, Textures};
+use super::anisotropy;
+use super::baked::{Anisotropy, Level, Textures};
 use super::fit::{self, Facet, Lobe, Offsets, Scratch};
 use super::levels::{shares, sizes};
-use super::options::{LEAST_ALPHA, Roughness, TexturesOptions};
+use super::options::{Axes, LEAST_ALPHA, Roughness, TexturesOptions};
 use super::surface::{Layout, Surface};
 use crate::error::BakeError;
 use crate::normal_map::NormalMap;
@@ -21,12 +22,16 @@ struct Effort {
 
 impl Effort {
     /// Fine levels have many texels, and few normals under each.
-    fn of(map: &NormalMap, size: (u32, u32), level: usize) -> Effort {
-        // Points along an edge, none where there are cells, and half vectors.
+    fn of(map: &NormalMap, size: (u32, u32), level: usize, axes: Option<Axes>) -> Effort {
+        const CELLS: usize = 3;
+        // Parts of a patch along its edges, then points along those of a texel; and half vectors.
         const BY_LEVEL: [(usize, usize); 8] =
-            [(0, 48), (0, 96), (0, 128), (12, 192), (18, 256), (24, 448), (32, 640), (40, 768)];
-        let (edge, half_vectors) = BY_LEVEL[(level - 1).min(BY_LEVEL.len() - 1)];
-        let layout = if edge == 0 { Layout::cells(map, size) } else { Layout::points(edge) };
+            [(1, 48), (1, 96), (1, 128), (12, 192), (18, 256), (24, 448), (32, 640), (40, 768)];
+        // Cells are broadened alike in all directions, which thin lobes would feel: smaller ones.
+        const OF_ANISOTROPY: [(usize, usize); CELLS] = [(3, 96), (2, 192), (2, 256)];
+        let k = (level - 1).min(BY_LEVEL.len() - 1);
+        let (count, half_vectors) = if axes.is_some() && k < CELLS { OF_ANISOTROPY[k] } else { BY_LEVEL[k] };
+        let layout = if k < CELLS { Layout::cells(map, size, count as u32) } else { Layout::points(count) };
         Effort { layout, offsets: Offsets::new(half_vectors) }
     }
 }
@@ -52,10 +57,17 @@ pub fn bake(
             Some(finer) if (finer.width, finer.height) == (2 * size.0, 2 * size.1) => finer.halved(),
             _ => Means::of(map, size),
         };
-        levels.push(fitted(map, roughness, &next, &Effort::of(map, size, level), progress));
+        levels.push(fitted(
+            (map, roughness),
+            &next,
+            &Effort::of(map, size, level, options.anisotropy),
+            options.anisotropy,
+            progress,
+        ));
         means = Some(next);
     }
     progress.end();
+    anisotropy::align(&mut levels);
     Ok(Textures { levels })
 }
 
@@ -113,22 +125,48 @@ fn lifted(x: f32, y: f32) -> f32 {
 }
 
 /// A level whose means are known.
-fn fitted(map: &NormalMap, roughness: &Roughness, means: &Means, effort: &Effort, progress: &dyn Progress) -> Level {
+fn fitted(
+    (map, roughness): (&NormalMap, &Roughness),
+    means: &Means,
+    effort: &Effort,
+    axes: Option<Axes>,
+    progress: &dyn Progress,
+) -> Level {
     let width = means.width as usize;
     let size = (means.width, means.height);
     let surface = Surface { map, roughness };
     let row = |(j, line): (usize, &[[f32; 3]])| {
         let mut fitter = Fitter { surface, effort, size, facets: Vec::new(), scratch: Scratch::default() };
-        let mut texels = Vec::with_capacity(width);
-        for (i, mean) in line.iter().enumerate() {
-            texels.push(fitter.texel((i, j), *mean));
-        }
+        let texel = |(i, mean): (usize, &[f32; 3])| match axes {
+            Some(axes) => fitter.anisotropic((i, j), *mean, axes),
+            None => fitter.texel((i, j), *mean),
+        };
+        let texels: Vec<Texel> = line.iter().enumerate().map(texel).collect();
         progress.advance(1);
         texels
     };
-    let rows: Vec<Vec<([f32; 2], f32)>> = means.normals.par_chunks(width).enumerate().map(row).collect();
-    let (normals, alphas) = rows.into_iter().flatten().unzip();
-    Level { width: means.width, height: means.height, normals, alphas }
+    let rows: Vec<Vec<Texel>> = means.normals.par_chunks(width).enumerate().map(row).collect();
+    let count = means.normals.len();
+    let mut level = Level {
+        width: means.width,
+        height: means.height,
+        normals: Vec::with_capacity(count),
+        alphas: Vec::with_capacity(count),
+        anisotropies: Vec::with_capacity(if axes.is_some() { count } else { 0 }),
+    };
+    for texel in rows.into_iter().flatten() {
+        level.normals.push(texel.normal);
+        level.alphas.push(texel.alpha);
+        level.anisotropies.extend(texel.anisotropy);
+    }
+    level
+}
+
+/// A texel of a level.
+struct Texel {
+    normal: [f32; 2],
+    alpha: f32,
+    anisotropy: Option<Anisotropy>,
 }
 
 /// Fits the texels of a row.
@@ -141,13 +179,30 @@ struct Fitter<'a> {
 }
 
 impl Fitter<'_> {
-    /// Normal and α of a texel whose mean normal is known.
-    fn texel(&mut self, at: (usize, usize), sum: [f32; 3]) -> ([f32; 2], f32) {
+    /// A texel whose mean normal is known.
+    fn texel(&mut self, at: (usize, usize), sum: [f32; 3]) -> Texel {
         let mean = unit(sum);
         self.surface.facets(&self.effort.layout, self.size, at, sum, &mut self.facets);
         let spread = Spread::of(&self.facets, mean);
         let lobe = spread.lobe(&self.facets, mean, &self.effort.offsets, &mut self.scratch);
-        ([lobe.normal[0], lobe.normal[1]], lobe.a2.sqrt().clamp(LEAST_ALPHA, 1.0))
+        let alpha = lobe.a2.sqrt().clamp(LEAST_ALPHA, 1.0);
+        Texel { normal: [lobe.normal[0], lobe.normal[1]], alpha, anisotropy: None }
+    }
+
+    /// The same by an anisotropic lobe.
+    fn anisotropic(&mut self, at: (usize, usize), sum: [f32; 3], axes: Axes) -> Texel {
+        let mean = unit(sum);
+        self.surface.facets(&self.effort.layout, self.size, at, sum, &mut self.facets);
+        let spread = Spread::of(&self.facets, mean);
+        // Around a normal that is free, the lobe is stretched about the one that is the best for a round lobe.
+        let normal = match axes {
+            Axes::Surface => mean,
+            Axes::Normal => spread.lobe(&self.facets, mean, &self.effort.offsets, &mut self.scratch).normal,
+        };
+        let a2 = [spread.a2, spread.range[0]];
+        let lobe = anisotropy::nearest(&self.facets, normal, a2, axes, &self.effort.offsets, &mut self.scratch);
+        let (alpha, anisotropy) = lobe.stored();
+        Texel { normal: [normal[0], normal[1]], alpha, anisotropy: Some(anisotropy) }
     }
 }
 

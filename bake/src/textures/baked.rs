@@ -16,6 +16,22 @@ pub struct Level {
     pub height: u32,
     /// Mean normals of length 1, projected: (x, y), +Y up, z = √(1 − x² − y²); row-major.
     pub normals: Vec<[f32; 2]>,
-    /// GGX α of the fitted highlight, row-major.
+    /// GGX α of the fitted highlight, row-major; with anisotropy that across its direction.
     pub alphas: Vec<f32>,
+    /// Strengths and directions of KHR_materials_anisotropy, row-major; none unless they were asked for.
+    pub anisotropies: Vec<Anisotropy>,
+}
+
+/// How far and along what a highlight is stretched, as KHR_materials_anisotropy has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Anisotropy {
+    /// α along the direction is α + (1 − α) strength², 0 to 1.
+    pub strength: f32,
+    /// Unit vector along which α is larger, in the plane of the texture, +Y up.
+    pub direction: [f32; 2],
+}
+
+impl Anisotropy {
+    /// None.
+    pub const NONE: Anisotropy = Anisotropy { strength: 0.0, direction: [1.0, 0.0] };
 }

@@ -12,15 +12,15 @@
 
 use multiversion::multiversion;
 
-const LANES: usize = 16;
-type Lanes = [f32; LANES];
+pub(super) const LANES: usize = 16;
+pub(super) type Lanes = [f32; LANES];
 /// A vector of [`LANES`] half vectors, views or lights.
 type Vectors = [Lanes; 3];
 
 /// Polar angles of the views that a highlight is fitted for, in radians.
 const VIEW_ANGLES: [f64; 4] = [0.0, 0.5, 0.9, 1.2];
-/// Part of the error that a normal other than the mean has to save.
-const WORTH: f32 = 0.01;
+/// Part of the error that a normal other than the mean has to save, or a stretched lobe.
+pub(super) const WORTH: f32 = 0.01;
 /// Error of the mode at a first look, as a part of that of the mean, from which on it is looked at no further.
 const HOPELESS: f32 = 1.1;
 /// Least z of a free normal.
@@ -81,15 +81,15 @@ impl Offsets {
 
 /// Half vectors with their views and lights, and what the facets show there.
 #[derive(Clone, Copy, Debug, Default)]
-struct Samples {
-    half: Vectors,
-    view: Vectors,
+pub(super) struct Samples {
+    pub half: Vectors,
+    pub view: Vectors,
     /// 2 (v·h): light is that times half less view.
-    twice: Lanes,
+    pub twice: Lanes,
     /// 4 (v·h), which makes half vectors lights, over the density of half vectors, up to a factor.
-    weight: Lanes,
+    pub weight: Lanes,
     /// 2π times radiance.
-    exact: Lanes,
+    pub exact: Lanes,
 }
 
 /// Samples against a normal.
@@ -114,15 +114,16 @@ impl Samples {
 /// Memory that fits share, so that a texel allocates none.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
-    samples: Vec<Samples>,
+    pub samples: Vec<Samples>,
+    pub terms: Vec<Terms>,
     seen: Vec<Seen>,
-    terms: Vec<Terms>,
 }
 
 /// The lobe nearest to the facets. `begin` has their mean normal and an α² to begin at; none of them has a lesser α² than
 /// `least`.
 pub(super) fn nearest(facets: &[Facet], begin: Lobe, least: f32, offsets: &Offsets, scratch: &mut Scratch) -> Lobe {
-    place(begin, offsets, &mut scratch.samples);
+    let a = begin.a2.sqrt();
+    place(begin.normal, [[a, 0.0], [0.0, a]], offsets, &mut scratch.samples);
     shine(facets, &mut scratch.samples, &mut scratch.terms);
     let (samples, seen) = (&scratch.samples, &mut scratch.seen);
     see(begin.normal, samples, seen);
@@ -150,33 +151,39 @@ const STEP: f32 = std::f32::consts::SQRT_2;
 /// Steps of the normal, in widths of the lobe.
 const TILTS: [f32; 2] = [0.5, 0.2];
 
-/// The lobe of this normal with the least error, and the error: steps downhill until three of them hold the least one, then the
-/// vertex of the parabola through these.
+/// The lobe of this normal with the least error, and the error.
 fn narrowed(begin: Lobe, least: f32, samples: &[Samples], seen: &[Seen]) -> (Lobe, f32) {
     let at = |broadening: f32| (least + broadening).min(1.0);
-    let mut broadening = begin.a2 - least;
-    let mut found = error(at(broadening), samples, seen);
+    let (broadening, found) = descend(begin.a2 - least, |broadening| error(at(broadening), samples, seen));
+    (Lobe { a2: at(broadening), ..begin }, found)
+}
+
+/// The broadening of the least error, and the error: steps downhill until three of them hold the least one, then the vertex of the
+/// parabola through these.
+pub(super) fn descend(begin: f32, error: impl Fn(f32) -> f32) -> (f32, f32) {
+    let mut broadening = begin;
+    let mut found = error(broadening);
     // Errors a step above and a step below.
-    let mut sides = [error(at(broadening * STEP), samples, seen), 0.0];
+    let mut sides = [error(broadening * STEP), 0.0];
     if sides[0] < found {
         while sides[0] < found {
             broadening *= STEP;
             (sides[1], found) = (found, sides[0]);
-            sides[0] = error(at(broadening * STEP), samples, seen);
+            sides[0] = error(broadening * STEP);
         }
     } else {
-        sides[1] = error(at(broadening / STEP), samples, seen);
+        sides[1] = error(broadening / STEP);
         while sides[1] < found {
             broadening /= STEP;
             (sides[0], found) = (found, sides[1]);
-            sides[1] = error(at(broadening / STEP), samples, seen);
+            sides[1] = error(broadening / STEP);
         }
     }
     // √2 to the power of the vertex, by its series.
     let u = 0.346_573_6 * vertex(sides[1], found, sides[0]);
-    let between = at(broadening * (1.0 + u * (1.0 + u * (0.5 + u * (1.0 / 6.0)))));
-    let error = error(between, samples, seen);
-    if error < found { (Lobe { a2: between, ..begin }, error) } else { (Lobe { a2: at(broadening), ..begin }, found) }
+    let between = broadening * (1.0 + u * (1.0 + u * (0.5 + u * (1.0 / 6.0))));
+    let at_vertex = error(between);
+    if at_vertex < found { (between, at_vertex) } else { (broadening, found) }
 }
 
 /// Where the parabola through values at −1, 0 and 1 is least, from −1 to 1; 0 where it has no least value.
@@ -235,18 +242,19 @@ fn tilted([x, y, z]: [f32; 3], p: f32, q: f32) -> [f32; 3] {
     [(x + p - x * along) * scale, (y + q - y * along) * scale, (z - p * x - q * y) * scale]
 }
 
-/// Half vectors in a lobe, of density D (h·n): with r the slope over α and c = h·n, π D (h·n) = 1/(α² c³ (1 + r²)²).
+/// Half vectors of a lobe, whose slopes around a normal are those of α = 1 times a matrix. Their density is D (h·n): with r the
+/// slope of α = 1 and c = h·n, π D (h·n) is 1/(c³ (1 + r²)²) over the matrix's determinant.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+avx"))]
-fn place(lobe: Lobe, offsets: &Offsets, samples: &mut Vec<Samples>) {
+pub(super) fn place(normal: [f32; 3], matrix: [[f32; 2]; 2], offsets: &Offsets, samples: &mut Vec<Samples>) {
     samples.resize(offsets.0.len(), Samples::default());
-    let a = lobe.a2.sqrt();
-    let [x, y, z] = lobe.normal;
+    let [x, y, z] = normal;
+    let [[xx, xy], [yx, yy]] = matrix;
     let s = 1.0 / (1.0 + z);
     for (out, offset) in samples.iter_mut().zip(&offsets.0) {
         let Offset { slope, rarity, view } = *offset;
         let mut block = Samples { view, ..Samples::default() };
         for k in 0..LANES {
-            let (p, q) = (a * slope[0][k], a * slope[1][k]);
+            let (p, q) = (xx * slope[0][k] + xy * slope[1][k], yx * slope[0][k] + yy * slope[1][k]);
             let along = (p * x + q * y) * s;
             let c2 = 1.0 / (1.0 + p * p + q * q);
             let c = c2.sqrt();
@@ -266,7 +274,7 @@ fn place(lobe: Lobe, offsets: &Offsets, samples: &mut Vec<Samples>) {
 
 /// What the facets show.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "x86_64+avx"))]
-fn shine(facets: &[Facet], samples: &mut [Samples], terms: &mut Vec<Terms>) {
+pub(super) fn shine(facets: &[Facet], samples: &mut [Samples], terms: &mut Vec<Terms>) {
     terms.clear();
     for facet in facets {
         terms.push(Terms::of(facet));
@@ -284,7 +292,7 @@ fn shine(facets: &[Facet], samples: &mut [Samples], terms: &mut Vec<Terms>) {
 
 /// A facet, and what is the same of it for all half vectors.
 #[derive(Clone, Copy, Debug)]
-struct Terms {
+pub(super) struct Terms {
     normal: [f32; 3],
     /// α² times the weight.
     power: f32,

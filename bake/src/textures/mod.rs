@@ -7,6 +7,7 @@
 //!
 //! Prior art: Toksvig 2004, Olano and Baker 2010 (LEAN), Tokuyoshi and Kaplanyan 2019. See `docs/methods/textures.md`.
 
+mod anisotropy;
 pub mod bake;
 pub mod baked;
 pub mod fit;
@@ -18,5 +19,5 @@ pub mod reference;
 mod surface;
 
 pub use bake::bake;
-pub use baked::{Level, Textures};
-pub use options::{Roughness, TexturesOptions};
+pub use baked::{Anisotropy, Level, Textures};
+pub use options::{Axes, Roughness, TexturesOptions};

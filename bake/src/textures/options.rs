@@ -20,16 +20,29 @@ pub enum Roughness {
 pub struct TexturesOptions {
     /// Bytes that the bake may hold meanwhile.
     pub max_memory: u64,
+    /// Where highlights are fitted by the anisotropic lobes of KHR_materials_anisotropy: what the engine takes their axes from.
+    pub anisotropy: Option<Axes>,
+}
+
+/// What an engine takes the axes of an anisotropic lobe from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// The surface, as the extension's own code does: the highlight lies around the surface's normal.
+    Surface,
+    /// The normal that it shades with, around which the highlight lies.
+    Normal,
 }
 
 impl Default for TexturesOptions {
     fn default() -> TexturesOptions {
-        TexturesOptions { max_memory: u64::MAX }
+        TexturesOptions { max_memory: u64::MAX, anisotropy: None }
     }
 }
 
 /// Bytes that a bake holds for each texel of the map, map and roughness included.
 pub const BYTES_PER_TEXEL: u64 = 24;
+/// Bytes more with anisotropy.
+const BYTES_OF_ANISOTROPY: u64 = 4;
 
 impl Roughness {
     /// Checks the roughness against the map that it belongs to.
@@ -78,7 +91,8 @@ impl TexturesOptions {
     /// # Errors
     /// `LimitExceeded` for a map that needs more than [`TexturesOptions::max_memory`].
     pub fn check(&self, map: &NormalMap) -> Result<()> {
-        let needed = u64::from(map.width) * u64::from(map.height) * BYTES_PER_TEXEL;
+        let bytes = BYTES_PER_TEXEL + if self.anisotropy.is_some() { BYTES_OF_ANISOTROPY } else { 0 };
+        let needed = u64::from(map.width) * u64::from(map.height) * bytes;
         if needed > self.max_memory {
             return Err(BakeError::LimitExceeded(format!(
                 "max-memory: the mips of {} × {} texels need {needed} bytes, the limit is {}; allow more, or use a part of the map",

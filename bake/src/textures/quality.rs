@@ -9,7 +9,7 @@
 
 use super::levels::sizes;
 use super::options::Roughness;
-use super::reference::{self, Facet};
+use super::reference::{self, Facet, Facets, Stretched};
 use crate::normal_map::NormalMap;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -113,6 +113,7 @@ fn probe(
     let centre = DVec2::new(f64::from(i) + 0.5, f64::from(j) + 0.5) * size;
     let beside = centre + DVec2::new(0.5 * size.x, 0.0);
     let facets = [centre, beside].map(|at| reference::facets(map, roughness, at, size, edge(level)));
+    let means = [0, 1].map(|at: usize| Facets::new(&facets[at]));
     let wide = Facet { normal: DVec3::Z, alpha: WIDE };
     let mut samples = Vec::new();
     for k in 0..lights {
@@ -122,12 +123,8 @@ fn probe(
         let from = &facets[(k % 2) as usize];
         let lobe = if k % 8 < 6 { &from[(w.fract() * from.len() as f64) as usize] } else { &wide };
         let half = half_vector(lobe, u, v);
-        let mean = |facets: &[Facet]| -> f64 {
-            let sum: f64 = facets.iter().map(|of| reference::density(of, half) * of.normal.dot(half).max(0.0)).sum();
-            sum / facets.len() as f64
-        };
-        let density =
-            0.375 * (mean(&facets[0]) + mean(&facets[1])) + 0.25 * reference::density(&wide, half) * half.z.max(0.0);
+        let density = 0.375 * (means[0].density(half) + means[1].density(half))
+            + 0.25 * reference::density(&wide, half) * half.z.max(0.0);
         for view in views() {
             let cos = view.dot(half);
             let light = 2.0 * cos * half - view;
@@ -136,7 +133,7 @@ fn probe(
             }
             // dω_l = 4 (v·h) dω_h.
             let weight = 4.0 * cos / (density * f64::from(lights));
-            let exact = [0, 1].map(|at| reference::mean_radiance(&facets[at], view, light));
+            let exact = [0, 1].map(|at: usize| means[at].radiance(view, light));
             samples.push(Sample { view, light, weight, exact });
         }
     }
@@ -157,17 +154,52 @@ fn half_vector(facet: &Facet, u: f64, v: f64) -> DVec3 {
     (facet.normal + r * (cos * t + sin * b)).normalize()
 }
 
-/// What a method shows at all probes. `texel` gives its texel (i, j) of the level; between texels, normals and perceptual
-/// roughness are interpolated, as an engine does.
-pub fn measure(probes: &[Probe], texel: impl Fn(u32, u32) -> Facet + Sync) -> Sums {
+/// A texel as an engine reads and shades it.
+pub trait Shaded {
+    /// Radiance towards `view` under light of irradiance 1 from `light`, both unit vectors.
+    fn radiance(&self, view: DVec3, light: DVec3) -> f64;
+
+    /// What is read halfway between two texels.
+    fn halfway(&self, next: &Self) -> Self;
+}
+
+impl Shaded for Facet {
+    fn radiance(&self, view: DVec3, light: DVec3) -> f64 {
+        reference::radiance(self, view, light)
+    }
+
+    fn halfway(&self, next: &Facet) -> Facet {
+        let perceptual = 0.5 * (self.alpha.sqrt() + next.alpha.sqrt());
+        Facet { normal: (self.normal + next.normal).normalize_or(DVec3::Z), alpha: perceptual * perceptual }
+    }
+}
+
+impl Shaded for Stretched {
+    fn radiance(&self, view: DVec3, light: DVec3) -> f64 {
+        reference::stretched_radiance(self, view, light)
+    }
+
+    fn halfway(&self, next: &Stretched) -> Stretched {
+        Stretched {
+            normal: (self.normal + next.normal).normalize_or(DVec3::Z),
+            roughness: 0.5 * (self.roughness + next.roughness),
+            strength: 0.5 * (self.strength + next.strength),
+            direction: 0.5 * (self.direction + next.direction),
+            axes: self.axes,
+        }
+    }
+}
+
+/// What a method shows at all probes. `texel` gives its texel (i, j) of the level; between texels, what is stored is interpolated.
+pub fn measure<T: Shaded>(probes: &[Probe], texel: impl Fn(u32, u32) -> T + Sync) -> Sums {
     let sums: Vec<Sums> = probes
         .par_iter()
         .map(|probe| {
             let [here, next] = probe.texels.map(|(i, j)| texel(i, j));
-            let between = halfway(&here, &next);
+            let between = here.halfway(&next);
             let mut sums = Sums::default();
             for sample in &probe.samples {
-                let [a, b] = [here, between].map(|of| reference::radiance(&of, sample.view, sample.light));
+                let [a, b] = [&here, &between].map(|of| of.radiance(sample.view, sample.light));
                 sums.exact += sample.weight * sample.exact[0];
                 sums.off += sample.weight * (a - sample.exact[0]).abs();
                 sums.off_beside += sample.weight * (b - sample.exact[1]).abs();
@@ -178,12 +210,6 @@ pub fn measure(probes: &[Probe], texel: impl Fn(u32, u32) -> Facet + Sync) -> Su
         })
         .collect();
     sums.into_iter().fold(Sums::default(), Sums::and)
-}
-
-/// What lies halfway between two texels.
-fn halfway(a: &Facet, b: &Facet) -> Facet {
-    let perceptual = 0.5 * (a.alpha.sqrt() + b.alpha.sqrt());
-    Facet { normal: (a.normal + b.normal).normalize_or(DVec3::Z), alpha: perceptual * perceptual }
 }
 
 /// Integral over lights of what one facet reflects of a light from straight above to all views: 1 less what masking loses. For

@@ -52,8 +52,9 @@ enum Kind {
 }
 
 impl Layout {
-    /// Cells under the texels of a level of this size.
-    pub fn cells(map: &NormalMap, level: (u32, u32)) -> Layout {
+    /// Cells under the texels of a level of this size, each patch in `split`² of them.
+    pub fn cells(map: &NormalMap, level: (u32, u32), split: u32) -> Layout {
+        let parts = f64::from(split);
         let along = |fine: u32, coarse: u32| {
             let ratio = f64::from(fine) / f64::from(coarse);
             let of_texel = |i: u32| {
@@ -61,7 +62,8 @@ impl Layout {
                 let mut places = Vec::new();
                 while from < end - 1e-6 {
                     // Patches end at the centres of texels.
-                    let to = ((from + 0.5 + 1e-6).floor() + 0.5).min(end);
+                    let part = ((from - 0.5) * parts + 1e-6).floor() + 1.0;
+                    let to = (part / parts + 0.5).min(end);
                     places.push(Place::at(0.5 * (from + to), to - from, fine, map.wrap));
                     from = to;
                 }

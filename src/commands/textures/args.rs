@@ -2,7 +2,7 @@
 
 use super::encode::{Format, Layout};
 use super::gltf_flags::GltfFlags;
-use super::target::{Channel, Stored, Target};
+use super::target::{AxesArg, Channel, Stored, Target};
 use crate::cli::normal_maps::{InputFlags, NormalY, check_name, name_of_file};
 use crate::cli::values;
 use crate::exit::Failure;
@@ -87,6 +87,10 @@ pub struct Args {
     /// How roughness is stored [default: as the engine has it]
     #[arg(long, value_name = "KIND", help_heading = "Output")]
     pub store: Option<Stored>,
+    /// Fit anisotropic highlights and write NAME_anisotropy too: direction in red and green, strength in blue, as KHR_materials_anisotropy.
+    /// Engines take the axes from the surface or from the normal
+    #[arg(long, value_name = "AXES", help_heading = "Output")]
+    pub anisotropy: Option<AxesArg>,
 
     /// Number of the tile of a UDIM set that these are the arguments of.
     #[arg(skip)]
@@ -152,6 +156,13 @@ impl Args {
         self.gltf.check()?;
         if self.gltf.gltf.is_some() && !matches!(self.target, Target::Gltf | Target::Bevy) {
             return Err(Failure::usage("--target: with --gltf expected gltf or bevy, whose textures glTF can hold"));
+        }
+        if self.anisotropy.is_some() && self.target.anisotropic(1.0, 1.0).is_none() {
+            return Err(Failure::usage(format!(
+                "--anisotropy: --target {} makes two widths of roughness and anisotropy in a way of its own, which is not known here; \
+                 expected gltf, filament or bevy",
+                values::name_of(&self.target)
+            )));
         }
         Ok(())
     }
@@ -226,6 +237,9 @@ impl Args {
             [Channel::Metallic] => self.metallic.is_some(),
             _ => true,
         };
-        self.target.files().iter().copied().filter(|(_, channels)| is_given(channels)).collect()
+        const ANISOTROPY: (&str, &[Channel]) =
+            ("anisotropy", &[Channel::Along, Channel::Up, Channel::Strength, Channel::One]);
+        let files = self.target.files().iter().copied().filter(|(_, channels)| is_given(channels));
+        files.chain(self.anisotropy.map(|_| ANISOTROPY)).collect()
     }
 }

@@ -5,7 +5,7 @@ use clap::ValueEnum;
 use std::path::PathBuf;
 
 /// Flags that say what maps are and how their files are stored, which a glTF file says itself.
-const OF_MAPS: [&str; 22] = [
+const OF_MAPS: [&str; 23] = [
     "map",
     "name",
     "roughness",
@@ -22,6 +22,7 @@ const OF_MAPS: [&str; 22] = [
     "two_channel",
     "output_y",
     "store",
+    "anisotropy",
     "crop",
     "normal_y",
     "wrap",

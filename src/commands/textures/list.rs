@@ -108,6 +108,9 @@ fn options(args: &Args) -> OptionList {
     options.push("zstd", args.zstd);
     options.push("blocks", args.blocks);
     options.push("two-channel", args.two_channel);
+    if let Some(axes) = &args.anisotropy {
+        options.push_choice("anisotropy", axes);
+    }
     options.extend(args.input.option_list());
     options
 }

@@ -25,7 +25,7 @@ use glint_formats::WriteOutcome;
 use list::List;
 use material::Material;
 use std::path::{Path, PathBuf};
-use target::Channel;
+use target::{AxesArg, Channel};
 use texels::Texels;
 
 /// Runs the subcommand.
@@ -59,7 +59,7 @@ fn bake(map: &Path, args: &Args, terminal: Terminal) -> Result<(), Failure> {
     }
     let material = Material::load(args, &loaded.map, terminal)?;
     let size = (loaded.map.width, loaded.map.height);
-    let options = TexturesOptions { max_memory: args.max_memory };
+    let options = TexturesOptions { max_memory: args.max_memory, anisotropy: args.anisotropy.map(AxesArg::axes) };
     options.check(&loaded.map).map_err(|e| Failure::bake(map, &e))?;
     material.roughness.validate(&loaded.map).map_err(Failure::from)?;
 
@@ -104,7 +104,7 @@ fn bake(map: &Path, args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let stages = Stages::new(terminal);
     let baked =
         textures::bake(&loaded.map, &material.roughness, &options, &stages).map_err(|e| Failure::bake(map, &e))?;
-    let texels = Texels::new(&loaded.map, &material, &baked.levels);
+    let texels = Texels::new(&loaded.map, &material, &baked.levels, args.target);
     let mut list = List::new(args, &loaded, &material);
     let mut write = |plan: &Plan, value: &(dyn Fn(usize, usize) -> [f32; 4] + Sync)| -> Result<(), Failure> {
         for (name, bytes) in layout.files(plan).into_iter().zip(layout.encode(plan, value)?) {

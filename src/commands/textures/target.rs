@@ -2,6 +2,7 @@
 //! stored.
 
 use clap::ValueEnum;
+use glint_bake_core::textures::Axes;
 
 /// Engines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -39,7 +40,30 @@ pub enum Channel {
     Roughness,
     Occlusion,
     Metallic,
+    /// x and y of the direction of anisotropy.
+    Along,
+    Up,
+    Strength,
     One,
+}
+
+/// What an engine takes the axes of anisotropic highlights from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum AxesArg {
+    /// the surface, as the code of KHR_materials_anisotropy, three.js, Filament and Bevy do
+    Surface,
+    /// the normal that it shades with
+    Normal,
+}
+
+impl AxesArg {
+    /// As the bake names them.
+    pub fn axes(self) -> Axes {
+        match self {
+            AxesArg::Surface => Axes::Surface,
+            AxesArg::Normal => Axes::Normal,
+        }
+    }
 }
 
 impl Target {
@@ -53,6 +77,21 @@ impl Target {
         match self {
             Target::Unity => Stored::Smoothness,
             _ => Stored::Perceptual,
+        }
+    }
+
+    /// α of the roughness and strength of anisotropy that make these α along and across the direction; none where the engine's way is not
+    /// known.
+    pub fn anisotropic(self, along: f32, across: f32) -> Option<(f32, f32)> {
+        match self {
+            // α_t = α + (1 − α) strength², α_b = α.
+            Target::Gltf | Target::Bevy if across < 1.0 => {
+                Some((across, ((along - across).max(0.0) / (1.0 - across)).sqrt()))
+            }
+            Target::Gltf | Target::Bevy => Some((across, 0.0)),
+            // α_t = α (1 + strength), α_b = α (1 − strength).
+            Target::Filament => Some((0.5 * (along + across), (along - across).max(0.0) / (along + across))),
+            Target::Unreal | Target::Unity | Target::Godot | Target::Generic => None,
         }
     }
 

@@ -39,12 +39,12 @@ impl Making<'_> {
         let map = self.normal_map(job)?;
         let material = self.material(job, &map)?;
         let label = label(job.normal);
-        let options = TexturesOptions { max_memory: self.args.max_memory };
+        let options = TexturesOptions { max_memory: self.args.max_memory, ..TexturesOptions::default() };
         options.check(&map).map_err(|e| self.named(Failure::bake(&label, &e)))?;
         let stages = Stages::new(self.terminal);
         let baked = textures::bake(&map, &material.roughness, &options, &stages)
             .map_err(|e| self.named(Failure::bake(&label, &e)))?;
-        let texels = Texels::new(&map, &material, &baked.levels);
+        let texels = Texels::new(&map, &material, &baked.levels, self.args.target);
         let channels = [Channel::Occlusion, Channel::Roughness, Channel::Metallic, Channel::One];
         // Level 0 of what was not multiplied is the image that is there.
         let unchanged = |image: Option<usize>, factor: f64| image.filter(|_| factor == 1.0);
