@@ -83,6 +83,8 @@ mod surface;
 mod textures;
 #[path = "cli/textures_gltf.rs"]
 mod textures_gltf;
+#[path = "cli/textures_project.rs"]
+mod textures_project;
 #[path = "cli/textures_readers.rs"]
 mod textures_readers;
 #[path = "cli/textures_udim.rs"]

@@ -12,12 +12,12 @@ mod plan;
 mod preview;
 mod report;
 mod shaders;
-mod textures;
 mod view;
 
 use crate::cli::{Common, LONG_VERSION, Terminal};
 use crate::exit::{Failure, HELP};
 use crate::methods::MethodCommand;
+use crate::textures;
 use clap::{CommandFactory, Parser, Subcommand};
 
 /// Lines that `glint-bake --help` shows and a test runs.

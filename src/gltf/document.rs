@@ -2,9 +2,11 @@
 //! are checked where they are used.
 
 use super::fault::Fault;
+use super::uri::file_of;
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 /// A document.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -163,6 +165,23 @@ impl Document {
             return Err(Fault::unsupported(format!("it is glTF version '{found}'; export it as version 2")));
         }
         Ok(document)
+    }
+
+    /// Files beside the document that it names, each once.
+    ///
+    /// # Errors
+    /// Unsupported, for what lies elsewhere.
+    pub fn files(&self) -> Result<Vec<PathBuf>, Fault> {
+        let buffers = self.buffers.iter().map(|buffer| &buffer.uri);
+        let uris = buffers.chain(self.images.iter().map(|image| &image.uri)).flatten();
+        let mut files = Vec::new();
+        for uri in uris.filter(|uri| !uri.starts_with("data:")) {
+            let file = file_of(uri)?;
+            if !files.contains(&file) {
+                files.push(file);
+            }
+        }
+        Ok(files)
     }
 
     /// A texture by its number.

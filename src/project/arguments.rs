@@ -4,11 +4,12 @@
 //! `input` is what the command takes without a flag. Paths are relative to the project file.
 
 use super::entry::Entry;
-use super::model::{CommandLine, Target};
+use super::model::{CommandLine, Project, Target, Work, output_flag};
 use crate::cli::{RunFlags, typed};
 use crate::methods::bake::Bake;
 use crate::methods::{MethodCommand, find};
 use crate::reading::is_standard;
+use crate::textures;
 use clap::builder::ValueParser;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
 use std::any::TypeId;
@@ -55,6 +56,7 @@ impl Methods {
     /// All methods.
     pub fn new() -> Methods {
         let command = MethodCommand::augment_subcommands(Command::new("glint-bake")).disable_help_subcommand(true);
+        let command = command.subcommand(textures::Args::augment_args(Command::new(textures::NAME)));
         let run_flags = RunFlags::augment_args(Command::new("run"));
         Methods {
             command: command.mut_subcommands(|method| method.disable_help_flag(true)),
@@ -84,7 +86,8 @@ impl Methods {
                 }
             }
         }
-        if line.inputs.is_empty() && self.positional(method).is_some() {
+        let is_file = line.value("gltf").is_some();
+        if line.inputs.is_empty() && self.positional(method).is_some() && !is_file {
             return Err(OptionError {
                 key: None,
                 why: "expected the files to bake as input = \"FILE\", found no input".into(),
@@ -93,7 +96,7 @@ impl Methods {
         Ok(line)
     }
 
-    /// The pack that a table describes.
+    /// The pack, or the textures, that a table describes.
     ///
     /// # Errors
     /// The first option that is wrong, as the command itself would say it.
@@ -102,22 +105,25 @@ impl Methods {
         name: &str,
         method: &str,
         line: CommandLine,
-        pack: PathBuf,
+        project: &Project,
     ) -> Result<Target, OptionError> {
-        let (matches, bake) = self.parse(method, &line, &pack)?;
-        let Some(known) = find(method) else {
-            return Err(OptionError { key: None, why: format!("there is no method {method}") });
-        };
+        let (pack, destination) = destination(name, method, &line, project);
+        let (matches, work) = self.parse(method, &line, &destination)?;
         let (_, flags) = matches.subcommand().unwrap_or((method, &matches));
+        let mut inputs = self.inputs(method, flags);
+        if let Work::Textures(args) = &work {
+            args.check_in_project().map_err(|why| OptionError { key: None, why: why.message })?;
+            inputs.extend(args.files_beside());
+        }
         Ok(Target {
             name: name.to_owned(),
             options: self.options(method, flags),
-            inputs: self.inputs(method, flags),
-            report: path_of(flags, "report"),
+            inputs,
+            report: flags.try_get_one::<PathBuf>("report").ok().flatten().cloned(),
             pack,
+            destination,
             planned: None,
-            bake,
-            method: known,
+            work,
             line,
         })
     }
@@ -127,16 +133,19 @@ impl Methods {
     /// # Errors
     /// The first option that is wrong, as the command itself would say it.
     pub fn bake(&mut self, method: &str, line: &CommandLine, pack: &Path) -> Result<Arc<dyn Bake>, OptionError> {
-        self.parse(method, line, pack).map(|(_, bake)| bake)
+        match self.parse(method, line, &[output_flag(pack)])?.1 {
+            Work::Pack { bake, .. } => Ok(bake),
+            Work::Textures(_) => Err(OptionError { key: None, why: format!("{method} makes no pack") }),
+        }
     }
 
     fn parse(
         &mut self,
         method: &str,
         line: &CommandLine,
-        pack: &Path,
-    ) -> Result<(ArgMatches, Arc<dyn Bake>), OptionError> {
-        let command = ["glint-bake", method].into_iter().map(OsString::from).chain(line.arguments(pack));
+        destination: &[OsString],
+    ) -> Result<(ArgMatches, Work), OptionError> {
+        let command = ["glint-bake", method].into_iter().map(OsString::from).chain(line.arguments(destination));
         let parsed = self.command.try_get_matches_from_mut(command);
         let fault = |error: &clap::Error| {
             let why = reason(error);
@@ -144,8 +153,15 @@ impl Methods {
             OptionError { key: line.flags.iter().map(|(key, _)| key).find(|key| named(key)).cloned(), why }
         };
         let matches = parsed.map_err(|error| fault(&error))?;
+        if let Some((textures::NAME, flags)) = matches.subcommand() {
+            let args = textures::Args::from_arg_matches(flags).map_err(|error| fault(&error))?;
+            return Ok((matches, Work::Textures(Arc::new(args))));
+        }
         let MethodCommand(bake) = MethodCommand::from_arg_matches(&matches).map_err(|error| fault(&error))?;
-        Ok((matches, bake))
+        let Some(method) = find(method) else {
+            return Err(OptionError { key: None, why: format!("there is no method {method}") });
+        };
+        Ok((matches, Work::Pack { bake, method }))
     }
 
     /// What a key adds to the command line.
@@ -164,6 +180,9 @@ impl Methods {
             return Err(
                 "the pack is named after its table and lies in the project's output folder; leave it out".into()
             );
+        }
+        if method == textures::NAME && key == "name" {
+            return Err("textures are named after their table; leave it out".into());
         }
         if self.run_flags.iter().any(|flag| flag == key) && !OWN_RUN_FLAGS.contains(&key) {
             return Err(format!("--{key} is given to glint-bake build, not to one material; leave it out"));
@@ -269,8 +288,25 @@ fn is_path(arg: &Arg) -> bool {
     parser.type_id() == TypeId::of::<PathBuf>()
 }
 
-fn path_of(matches: &ArgMatches, id: &str) -> Option<PathBuf> {
-    matches.get_one::<PathBuf>(id).cloned()
+/// What is written last, and the arguments that say where results go.
+fn destination(name: &str, method: &str, line: &CommandLine, project: &Project) -> (PathBuf, Vec<OsString>) {
+    if method != textures::NAME {
+        let pack = project.pack(name);
+        let flag = output_flag(&pack);
+        return (pack, vec![flag]);
+    }
+    match line.value("gltf") {
+        Some(file) => {
+            let extension = Path::new(&file).extension().and_then(OsStr::to_str).unwrap_or("glb").to_owned();
+            let file = project.output.join(format!("{name}.{extension}"));
+            let flag = output_flag(&file);
+            (file, vec![flag])
+        }
+        None => {
+            let list = project.output.join(format!("{name}.json"));
+            (list, vec![output_flag(&project.output), typed("name", name).into()])
+        }
+    }
 }
 
 /// A path of the project file as the process sees it.

@@ -10,7 +10,7 @@
 
 use super::arguments::{Methods, OptionError, ProjectOption, folder_join};
 use super::entry::{Entry, entries};
-use super::model::{PlannedTable, Project, Target};
+use super::model::{PlannedTable, Project, Target, Work};
 use super::scene::{self, ENVIRONMENT_KEYS, SURFACE_KEYS};
 use crate::exit::Failure;
 use crate::methods::ALL;
@@ -226,9 +226,14 @@ impl<'a> Reader<'a> {
             let Some(base) = self.target(entry, table, method, &own, keys) else { return };
             bases.push(base);
         }
-        let alternative =
-            |base: &Target| Alternative { method: base.method, bake: base.bake.clone(), fixed: base.line.keys() };
-        let alternatives = bases.iter().map(alternative).collect();
+        // Scenes plan methods that make packs.
+        let alternative = |base: &Target| match &base.work {
+            Work::Pack { bake, method } => {
+                Some(Alternative { method: *method, bake: bake.clone(), fixed: base.line.keys() })
+            }
+            Work::Textures(_) => None,
+        };
+        let alternatives = bases.iter().filter_map(alternative).collect();
         let planned = Planned { name: entry.key.to_owned(), subject, alternatives };
         self.project.planned.push(PlannedTable { planned, bases });
     }
@@ -251,9 +256,8 @@ impl<'a> Reader<'a> {
         let own = own.iter().filter(|own| own.key != "method" && !skipped.contains(&own.key));
         options.extend(own.map(|entry| ProjectOption { entry: *entry, table: table.to_owned() }));
         let name = entry.key;
-        let pack = self.project.pack(name);
         let line = self.methods.line(method, &options, self.folder);
-        match line.and_then(|line| self.methods.target(name, method, line, pack)) {
+        match line.and_then(|line| self.methods.target(name, method, line, &self.project)) {
             Ok(target) => Some(target),
             Err(wrong) => {
                 self.problems.of_option(&wrong, &options, entry.at, table);

@@ -36,7 +36,7 @@ impl Freshness {
         };
         let mut outputs = Vec::new();
         let mut reasons = Vec::new();
-        for (k, path) in target.outputs().enumerate() {
+        for (k, path) in target.outputs().iter().enumerate() {
             let known = old.outputs.get(k).map(|(_, stamp)| stamp);
             let name = file_name(path);
             match Stamp::of(path, known) {

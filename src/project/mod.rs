@@ -16,4 +16,4 @@ pub mod settled;
 pub mod stamp;
 
 pub use file::load;
-pub use model::{CommandLine, PlannedTable, Project, Target};
+pub use model::{CommandLine, PlannedTable, Project, Target, Work};

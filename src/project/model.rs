@@ -6,6 +6,7 @@ use crate::methods::bake::Bake;
 use crate::methods::method::Method;
 use crate::plan::Planned;
 use crate::scene::Scene;
+use crate::textures;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -61,11 +62,15 @@ impl CommandLine {
         line
     }
 
-    /// All arguments of a bake into `pack`.
-    pub fn arguments(&self, pack: &Path) -> Vec<OsString> {
-        let mut output = OsString::from("--output=");
-        output.push(pack);
-        let mut arguments = vec![output];
+    /// The value of a flag, if the table has it.
+    pub fn value(&self, key: &str) -> Option<String> {
+        let (_, flag) = self.flags.iter().find(|(other, _)| other == key)?;
+        flag.to_string_lossy().split_once('=').map(|(_, value)| value.to_owned())
+    }
+
+    /// All arguments, those first that say where results go.
+    pub fn arguments(&self, destination: &[OsString]) -> Vec<OsString> {
+        let mut arguments = destination.to_vec();
         arguments.extend(self.flags.iter().map(|(_, flag)| flag.clone()));
         if !self.inputs.is_empty() {
             arguments.push("--".into());
@@ -75,17 +80,38 @@ impl CommandLine {
     }
 }
 
-/// One pack to build.
+/// The argument that says where a result goes.
+pub fn output_flag(path: &Path) -> OsString {
+    let mut output = OsString::from("--output=");
+    output.push(path);
+    output
+}
+
+/// What makes a target.
+#[derive(Clone, Debug)]
+pub enum Work {
+    /// A method, which makes a pack.
+    Pack {
+        /// The bake that makes it.
+        bake: Arc<dyn Bake>,
+        /// Its method.
+        method: &'static dyn Method,
+    },
+    /// `glint-bake textures`, which makes files for engines.
+    Textures(Arc<textures::Args>),
+}
+
+/// One pack to build, or textures.
 #[derive(Clone, Debug)]
 pub struct Target {
     /// Name of the table, and of the pack's file.
     pub name: String,
-    /// The pack.
+    /// The pack; of textures their list, or the glTF file, either of which is written last.
     pub pack: PathBuf,
-    /// The bake that makes it.
-    pub bake: Arc<dyn Bake>,
-    /// Its method.
-    pub method: &'static dyn Method,
+    /// Arguments that say where results go.
+    pub destination: Vec<OsString>,
+    /// What makes it.
+    pub work: Work,
     /// The options and inputs that the project gives it.
     pub line: CommandLine,
     /// Every option that the pack's bytes may depend on, defaults included: name and values.
@@ -101,12 +127,26 @@ pub struct Target {
 impl Target {
     /// Arguments of the bake on the command line.
     pub fn arguments(&self) -> Vec<OsString> {
-        self.line.arguments(&self.pack)
+        self.line.arguments(&self.destination)
+    }
+
+    /// Name of the subcommand that makes it.
+    pub fn method(&self) -> &'static str {
+        match &self.work {
+            Work::Pack { method, .. } => method.name(),
+            Work::Textures(_) => textures::NAME,
+        }
     }
 
     /// The same table with options that were chosen for it, as the pack `name` at `pack`, which `bake` makes.
     pub fn chosen(&self, name: &str, pack: PathBuf, options: &OptionList, bake: Arc<dyn Bake>) -> Target {
-        let mut target = Target { name: name.to_owned(), pack, bake, ..self.clone() };
+        let mut target = self.clone();
+        target.name = name.to_owned();
+        target.destination = vec![output_flag(&pack)];
+        target.pack = pack;
+        if let Work::Pack { bake: old, .. } = &mut target.work {
+            *old = bake;
+        }
         for (flag, value) in options.iter() {
             target.line = target.line.with(flag, value);
             // A flag that takes no value is true when it is there.
@@ -120,9 +160,16 @@ impl Target {
         target
     }
 
-    /// Every file that is written: the pack first.
-    pub fn outputs(&self) -> impl Iterator<Item = &Path> {
-        std::iter::once(self.pack.as_path()).chain(self.report.as_deref())
+    /// Every file that is written, as far as it is known before: the pack first. Textures have the files that their list names, once
+    /// there is one.
+    pub fn outputs(&self) -> Vec<PathBuf> {
+        let mut outputs = vec![self.pack.clone()];
+        outputs.extend(self.report.clone());
+        if let Work::Textures(_) = self.work {
+            let beside = textures::files_of(&self.pack).into_iter();
+            outputs.extend(beside.filter(|file| !self.inputs.contains(file)));
+        }
+        outputs
     }
 }
 

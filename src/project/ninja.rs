@@ -50,7 +50,7 @@ pub fn manifest(project: &Project, program: &str, manifest: &Path) -> Result<Str
         text += &format!(
             "build {}{beside}: bake{inputs}\n  method = {}\n  arguments = {}\n",
             path(&target.pack)?,
-            value(target.method.name())?,
+            value(target.method())?,
             command(&target.arguments())?,
         );
     }

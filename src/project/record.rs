@@ -34,10 +34,10 @@ impl Record {
         Record {
             tool: format!("{} {}", env!("CARGO_PKG_VERSION"), git_hash()),
             format: format!("{}.{}", VERSION.0, VERSION.1),
-            method: target.method.name().to_owned(),
+            method: target.method().to_owned(),
             options: target.options.clone(),
             inputs: target.inputs.iter().zip(inputs).map(|(path, stamp)| named(path, stamp)).collect(),
-            outputs: target.outputs().zip(outputs).map(|(path, stamp)| named(path, stamp)).collect(),
+            outputs: target.outputs().iter().zip(outputs).map(|(path, stamp)| named(path, stamp)).collect(),
         }
     }
 

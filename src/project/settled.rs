@@ -1,7 +1,7 @@
 //! The plan of a project between builds: drafts take longer than bakes, so a plan is made once for equal maps and scenes.
 
 use super::arguments::Methods;
-use super::model::{Project, Target};
+use super::model::{Project, Target, Work};
 use super::stamp::Stamp;
 use crate::cli::{OptionList, Terminal, git_hash};
 use crate::exit::{Exit, Failure};
@@ -80,8 +80,8 @@ pub fn measure(project: &Project) -> Result<Vec<(&str, Measured)>, Failure> {
     let mut all = Vec::new();
     for target in &project.targets {
         let Some(table) = target.planned.and_then(|at| project.planned.get(at)) else { continue };
-        let planning = target.method.planning();
-        let measured = plan::measure(&target.pack, target.bake.as_ref(), planning, scene, &table.planned.subject)?;
+        let Work::Pack { bake, method } = &target.work else { continue };
+        let measured = plan::measure(&target.pack, bake.as_ref(), method.planning(), scene, &table.planned.subject)?;
         all.push((target.name.as_str(), measured));
     }
     Ok(all)
@@ -141,7 +141,7 @@ pub fn settle(project: &mut Project, save: bool, terminal: Terminal) -> Result<F
             Some(bake) => bake.clone(),
             None => {
                 let line = pack.options.iter().fold(base.line.clone(), |line, (key, value)| line.with(key, value));
-                methods.bake(base.method.name(), &line, &place).map_err(|_| fault())?
+                methods.bake(base.method(), &line, &place).map_err(|_| fault())?
             }
         };
         let target = base.chosen(&pack.name, place, &pack.options, bake);

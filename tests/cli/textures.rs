@@ -261,6 +261,37 @@ fn crops_heights_and_single_texels_are_textures_too() {
 }
 
 #[test]
+fn one_texture_may_be_one_file() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let all = ["--roughness-map", "grey.png", "--format", "dds"];
+    textures(folder.path(), &all).ok();
+    for (kind, output) in [("normal", "a.dds"), ("orm", "b.dds")] {
+        bake(
+            folder.path(),
+            &[&["textures", "n.png", "-o", output, "--only", kind, "--depfile", "d"], &all[..]].concat(),
+        )
+        .ok();
+        assert!(fs::read(at(output)).unwrap() == fs::read(at("out").join(format!("n_{kind}.dds"))).unwrap());
+        assert!(fs::read_to_string(at("d")).unwrap().starts_with(&format!("{output}: \\\n  n.png")));
+        assert!(!at("n.json").exists());
+    }
+    // Into a folder it has its list.
+    bake(folder.path(), &["textures", "n.png", "-o", "one", "--only", "normal", "--format", "png"]).ok();
+    assert!(at("one/n_normal.mip3.png").exists() && at("one/n.json").exists() && !at("one/n_orm.mip0.png").exists());
+    for (output, flags, part) in [
+        ("c.ktx2", &[][..], "say which with --only, or name a folder"),
+        ("c.png", &["--only", "normal", "--format", "png"], "each mip has a file"),
+        ("out", &["--only", "mask"], "--only: expected normal or orm, found mask"),
+    ] {
+        let refused = bake(folder.path(), &[&["textures", "n.png", "-o", output], flags].concat());
+        assert!(refused.code == 2 && refused.stderr.contains(part), "{output}: {}", refused.stderr);
+    }
+    let refused = bake(folder.path(), &["textures", "n.png", "-o", "none/c.ktx2", "--only", "normal"]);
+    assert!(refused.code == 3 && refused.stderr.contains("does not exist"), "{}", refused.stderr);
+}
+
+#[test]
 fn a_dry_run_and_refusals_write_nothing() {
     let folder = folder();
     let done = textures(folder.path(), &["-n"]).ok();

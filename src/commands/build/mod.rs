@@ -101,7 +101,8 @@ fn prepare(project: &Project, depfile: Option<&Path>) -> Result<(), Failure> {
     let records = project.records();
     std::fs::create_dir_all(&records).map_err(|e| Failure::io(&records, "cannot be made", &e))?;
     remove_remains(&project.output);
-    let outputs: Vec<&Path> = project.targets.iter().flat_map(Target::outputs).chain(depfile).collect();
+    let outputs: Vec<PathBuf> = project.targets.iter().flat_map(Target::outputs).collect();
+    let outputs: Vec<&Path> = outputs.iter().map(PathBuf::as_path).chain(depfile).collect();
     let inputs = project.targets.iter().flat_map(|target| target.inputs.iter().map(PathBuf::as_path));
     let inputs: Vec<&Path> = inputs.chain([project.path.as_path()]).collect();
     output::check_distinct(&outputs, &inputs)?;

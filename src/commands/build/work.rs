@@ -7,8 +7,9 @@ use crate::progress;
 use crate::project::freshness::Freshness;
 use crate::project::record::Record;
 use crate::project::stamp::{Stamp, Stat};
-use crate::project::{Project, Target};
+use crate::project::{Project, Target, Work};
 use crate::quantities::kib;
+use crate::textures;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -90,7 +91,10 @@ fn one(project: &Project, target: &Target, state: &Result<Freshness, Failure>, t
 /// Whether the pack has other bytes than before, and how many.
 fn baked(project: &Project, target: &Target, state: &Freshness, part: Terminal) -> Result<(bool, u64), Failure> {
     let before = Stat::of(&target.pack).ok();
-    bake::run(target.bake.as_ref(), part)?;
+    match &target.work {
+        Work::Pack { bake, .. } => bake::run(bake.as_ref(), part)?,
+        Work::Textures(args) => textures::run(args, part)?,
+    }
     let unreadable = |path: &Path| {
         let path = path.to_owned();
         move |e: std::io::Error| Failure::io(&path, "cannot be read", &e)
@@ -105,12 +109,13 @@ fn baked(project: &Project, target: &Target, state: &Freshness, part: Terminal) 
     }
     if rested {
         let stamp = |path: &Path| Stamp::of(path, None).map_err(unreadable(path));
-        let outputs = target.outputs().map(stamp).collect::<Result<_, _>>()?;
+        let outputs = target.outputs().iter().map(|path| stamp(path)).collect::<Result<_, _>>()?;
         Record::new(target, inputs, outputs).write(&project.records(), &target.name)?;
     } else {
         part.warn("an input changed while it was baked; the next build bakes it again");
     }
-    Ok((before != Some(after), after.bytes()))
+    let bytes = target.outputs().iter().filter_map(|path| Stat::of(path).ok()).map(|stat| stat.bytes()).sum();
+    Ok((before != Some(after), bytes))
 }
 
 /// Says what was done; a failure when targets failed, with the code of the first one and a list of all with theirs.

@@ -1,11 +1,11 @@
 //! `glint-bake export`: what a pack holds as files that engines and other programs load, and a JSON beside them.
 
-pub(super) mod exr;
 mod format;
 mod sidecar;
 
 use crate::cli::{Terminal, values};
 use crate::exit::{Exit, Failure};
+use crate::exr_file;
 use crate::info::Report;
 use crate::output;
 use crate::reading;
@@ -199,7 +199,7 @@ fn encode(item: &Item, payload: &[u8]) -> Result<Vec<u8>, Failure> {
             ktx2::write(&texture, payload, &metadata)
         }
         (Target::Dds, Some(texture)) => dds::write(&texture, payload),
-        (Target::Exr, Some(texture)) => exr::write(&texture, payload)?,
+        (Target::Exr, Some(texture)) => exr_file::write(&texture, payload)?,
         _ => Some(payload.to_vec()),
     };
     encoded.ok_or_else(|| {

@@ -1,8 +1,8 @@
 //! Levels of a texture as bytes, and bytes as files: KTX2, DDS and EXR with all levels, PNG one a level.
 
 use crate::blocks;
-use crate::commands::export::exr;
 use crate::exit::{Exit, Failure};
+use crate::exr_file;
 use clap::ValueEnum;
 use glint_bake_core::textures::levels::sizes;
 use glint_formats::export::blocks::Blocks;
@@ -24,6 +24,23 @@ pub enum Format {
     Png,
     /// OpenEXR in half floats, one part a mip
     Exr,
+}
+
+impl Format {
+    /// How names of files end.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Format::Ktx2 => "ktx2",
+            Format::Dds => "dds",
+            Format::Png => "png",
+            Format::Exr => "exr",
+        }
+    }
+
+    /// Whether a file holds all mips.
+    pub fn has_all_mips(self) -> bool {
+        self != Format::Png
+    }
 }
 
 /// How a texture is stored.
@@ -96,7 +113,7 @@ impl Layout {
             Format::Ktx2 if self.zstd => ktx2::write_zstd(&texture, &payload, &metadata),
             Format::Ktx2 => ktx2::write(&texture, &payload, &metadata),
             Format::Dds => dds::write(&texture, &payload),
-            _ => exr::write(&texture, &payload)?,
+            _ => exr_file::write(&texture, &payload)?,
         };
         Ok(vec![bytes.ok_or_else(unsupported)?])
     }

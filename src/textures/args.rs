@@ -1,8 +1,10 @@
 //! Flags of `glint-bake textures`.
 
 use super::encode::{Format, Layout};
+use super::files;
 use super::gltf_flags::GltfFlags;
 use super::target::{AxesArg, Channel, Stored, Target};
+use super::tile_names;
 use crate::cli::normal_maps::{InputFlags, NormalY, check_name, name_of_file};
 use crate::cli::values;
 use crate::exit::Failure;
@@ -15,6 +17,7 @@ Examples:
   glint-bake textures flakes.png -o textures
   glint-bake textures flakes.png --roughness 0.3 --target unreal --format png -o textures
   glint-bake textures flakes.png --roughness-map flakes.png --roughness-channel b -o textures
+  glint-bake textures flakes.png --only normal -o normal.ktx2
   glint-bake textures --gltf model.glb --zstd -o calm.glb";
 
 /// Write a normal map and its roughness as textures whose mips are filtered, for any engine
@@ -27,7 +30,7 @@ Examples:
 pub struct Args {
     /// Normal map: PNG, TGA, JPEG, TIFF, WebP or EXR
     ///
-    /// With <UDIM> in the names of maps every tile is filtered, its edges clamped; numbers stay in the names.
+    /// Where names of maps have UDIM in angle brackets, every tile is filtered, its edges clamped; numbers stay in the names.
     #[arg(value_name = "NORMAL_MAP", required_unless_present = "gltf")]
     pub map: Option<PathBuf>,
     /// Folder to write into; it is created. With --gltf, the file to write
@@ -78,6 +81,11 @@ pub struct Args {
     /// Compress KTX2 and DDS files in blocks that GPUs read: BC5 for normals, x and y only, BC7 for the others, BC4 for one channel
     #[arg(long, help_heading = "Output")]
     pub blocks: bool,
+    /// Write only this texture: normal, or what its name ends in, as orm; -o may then be its file
+    ///
+    /// A file is meant by a name that ends as files of --format do. It has no list beside it.
+    #[arg(long, value_name = "TEXTURE", help_heading = "Output")]
+    pub only: Option<String>,
     /// Write x and y of normals only, in red and green
     #[arg(long, help_heading = "Output")]
     pub two_channel: bool,
@@ -154,6 +162,9 @@ impl Args {
     /// Usage.
     pub fn check(&self) -> Result<(), Failure> {
         self.gltf.check()?;
+        if self.gltf.gltf.is_none() {
+            self.layout()?;
+        }
         if self.gltf.gltf.is_some() && !matches!(self.target, Target::Gltf | Target::Bevy) {
             return Err(Failure::usage("--target: with --gltf expected gltf or bevy, whose textures glTF can hold"));
         }
@@ -165,6 +176,24 @@ impl Args {
             )));
         }
         Ok(())
+    }
+
+    /// The same for a table of a project, each of which is one map or one file.
+    ///
+    /// # Errors
+    /// Usage.
+    pub fn check_in_project(&self) -> Result<(), Failure> {
+        self.check()?;
+        if self.inputs().iter().any(|path| tile_names::is_set(path)) {
+            let what = "stands for all tiles on a command line; in a project give each tile a table";
+            return Err(Failure::usage(format!("{} {what}", tile_names::MARK)));
+        }
+        Ok(())
+    }
+
+    /// Files that the glTF file has beside it, as far as it can be read.
+    pub fn files_beside(&self) -> Vec<PathBuf> {
+        self.gltf.gltf.as_deref().map_or(Vec::new(), files::beside)
     }
 
     /// What names of files begin with.

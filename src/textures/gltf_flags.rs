@@ -5,7 +5,7 @@ use clap::ValueEnum;
 use std::path::PathBuf;
 
 /// Flags that say what maps are and how their files are stored, which a glTF file says itself.
-const OF_MAPS: [&str; 23] = [
+const OF_MAPS: [&str; 24] = [
     "map",
     "name",
     "roughness",
@@ -18,6 +18,7 @@ const OF_MAPS: [&str; 23] = [
     "metallic_channel",
     "format",
     "bits",
+    "only",
     "blocks",
     "two_channel",
     "output_y",

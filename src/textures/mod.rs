@@ -2,15 +2,19 @@
 
 mod args;
 mod encode;
+mod files;
 mod gltf;
 mod gltf_flags;
 mod list;
 mod material;
 mod target;
 mod texels;
+mod tile_names;
 mod udim;
+mod wanted;
 
 pub use args::Args;
+pub use files::files_of;
 
 use crate::cli::{Terminal, on_threads};
 use crate::depfile;
@@ -25,8 +29,11 @@ use glint_formats::WriteOutcome;
 use list::List;
 use material::Material;
 use std::path::{Path, PathBuf};
-use target::{AxesArg, Channel};
+use target::AxesArg;
 use texels::Texels;
+
+/// Name of the subcommand.
+pub const NAME: &str = "textures";
 
 /// Runs the subcommand.
 pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
@@ -49,9 +56,12 @@ fn bake(map: &Path, args: &Args, terminal: Terminal) -> Result<(), Failure> {
     for path in &inputs {
         reading::check_readable(path).map_err(|e| Failure::io(path, "cannot be read", &e))?;
     }
+    let file = wanted::file(args, &layout)?;
     let list_path = args.output.join(format!("{stem}{number}.json"));
+    // What is written last: one file has no list.
+    let last = file.unwrap_or(&list_path);
     let depends: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
-    let rule = args.depfile.as_ref().map(|_| depfile::rule(&list_path, &depends)).transpose()?;
+    let rule = args.depfile.as_ref().map(|_| depfile::rule(last, &depends)).transpose()?;
 
     let loaded = load_normal_map(map, &args.input.options(args.max_memory))?;
     for warning in &loaded.warnings {
@@ -63,33 +73,19 @@ fn bake(map: &Path, args: &Args, terminal: Terminal) -> Result<(), Failure> {
     options.check(&loaded.map).map_err(|e| Failure::bake(map, &e))?;
     material.roughness.validate(&loaded.map).map_err(Failure::from)?;
 
-    // BC5 has two channels.
-    let two_channel = args.two_channel || args.blocks;
-    let normal_plan = Plan {
-        name: format!("{stem}_normal{number}"),
-        channels: if two_channel { 2 } else { 4 },
-        opaque: !two_channel,
-        size,
-    };
-    let companions: Vec<(Plan, &[Channel])> = args
-        .companions()
-        .into_iter()
-        .map(|(suffix, channels)| {
-            let opaque = channels.last() == Some(&Channel::One);
-            (Plan { name: format!("{stem}_{suffix}{number}"), channels: channels.len(), opaque, size }, channels)
-        })
-        .collect();
-    let plans = || std::iter::once(&normal_plan).chain(companions.iter().map(|(plan, _)| plan));
-    for plan in plans() {
-        check_size(args, &layout, plan)?;
+    let wanted = wanted::textures(args, &stem, &number, size)?;
+    for texture in &wanted {
+        check_size(args, &layout, &texture.plan)?;
     }
-    let names = plans().flat_map(|plan| layout.files(plan));
-    let mut paths: Vec<PathBuf> = names.map(|name| args.output.join(name)).collect();
-    paths.push(list_path.clone());
+    let mut paths: Vec<PathBuf> =
+        wanted.iter().flat_map(|texture| wanted::paths(args, &layout, file, texture)).collect();
+    if file.is_none() {
+        paths.push(list_path.clone());
+    }
     paths.extend(args.depfile.clone());
     output::check_distinct(&paths.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &depends)?;
     if args.dry_run {
-        if args.output.exists() {
+        if args.output.exists() || file.is_some() {
             paths.iter().try_for_each(|path| output::check_writable(path))?;
         }
         for path in &paths {
@@ -98,7 +94,9 @@ fn bake(map: &Path, args: &Args, terminal: Terminal) -> Result<(), Failure> {
         terminal.say("dry run, nothing was written");
         return Ok(());
     }
-    output::create_folder(&args.output)?;
+    if file.is_none() {
+        output::create_folder(&args.output)?;
+    }
     paths.iter().try_for_each(|path| output::check_writable(path))?;
 
     let stages = Stages::new(terminal);
@@ -106,27 +104,26 @@ fn bake(map: &Path, args: &Args, terminal: Terminal) -> Result<(), Failure> {
         textures::bake(&loaded.map, &material.roughness, &options, &stages).map_err(|e| Failure::bake(map, &e))?;
     let texels = Texels::new(&loaded.map, &material, &baked.levels, args.target);
     let mut list = List::new(args, &loaded, &material);
-    let mut write = |plan: &Plan, value: &(dyn Fn(usize, usize) -> [f32; 4] + Sync)| -> Result<(), Failure> {
-        for (name, bytes) in layout.files(plan).into_iter().zip(layout.encode(plan, value)?) {
-            let path = args.output.join(&name);
-            let outcome = output::write(&path, &bytes)?;
+    let (down, stored) = (args.green_down(), args.stored());
+    for texture in &wanted {
+        let bytes = match texture.channels {
+            None => layout.encode(&texture.plan, &|level, k| texels.normal(level, k, down))?,
+            Some(channels) => layout.encode(&texture.plan, &|level, k| texels.channels(channels, stored, level, k))?,
+        };
+        for (path, bytes) in wanted::paths(args, &layout, file, texture).iter().zip(bytes) {
+            let outcome = output::write(path, &bytes)?;
             terminal.say(&format!("{}: {}", path.display(), said(outcome)));
-            list.add(name, &bytes);
+            list.add(reading::file_name(path).to_string_lossy().into_owned(), &bytes);
         }
-        Ok(())
-    };
-    let down = args.green_down();
-    write(&normal_plan, &|level, k| texels.normal(level, k, down))?;
-    let stored = args.stored();
-    for (plan, channels) in &companions {
-        write(plan, &|level, k| texels.channels(channels, stored, level, k))?;
     }
     if let (Some(path), Some(rule)) = (&args.depfile, rule) {
         output::write(path, rule.as_bytes())?;
     }
     // The list comes last: who finds it finds the files.
-    let outcome = output::write(&list_path, list.to_json().as_bytes())?;
-    terminal.say(&format!("{}: {}", list_path.display(), said(outcome)));
+    if file.is_none() {
+        let outcome = output::write(&list_path, list.to_json().as_bytes())?;
+        terminal.say(&format!("{}: {}", list_path.display(), said(outcome)));
+    }
     if args.json {
         output::print(&list.to_json())?;
     }

@@ -111,6 +111,9 @@ fn options(args: &Args) -> OptionList {
     if let Some(axes) = &args.anisotropy {
         options.push_choice("anisotropy", axes);
     }
+    if let Some(only) = &args.only {
+        options.push("only", only);
+    }
     options.extend(args.input.option_list());
     options
 }

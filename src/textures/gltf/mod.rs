@@ -14,7 +14,7 @@ use crate::exit::{Exit, Failure};
 use crate::gltf::container::Container;
 use crate::gltf::document::Document;
 use crate::gltf::fault::Fault;
-use crate::gltf::source::{Source, file_of};
+use crate::gltf::source::Source;
 use crate::output;
 use crate::reading::{self, ReadError};
 use glint_formats::WriteOutcome;
@@ -45,7 +45,7 @@ pub fn run(path: &Path, args: &Args, terminal: Terminal) -> Result<(), Failure> 
     }
     let folder = output::folder_of(path);
     let source = Source { document: &document, binary: container.binary.as_deref(), folder, limit: args.max_memory };
-    let beside = files_beside(&document).map_err(at)?;
+    let beside = document.files().map_err(at)?;
     let inputs: Vec<PathBuf> =
         std::iter::once(path.to_owned()).chain(beside.iter().map(|file| folder.join(file))).collect();
     let depends: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
@@ -75,7 +75,7 @@ pub fn run(path: &Path, args: &Args, terminal: Terminal) -> Result<(), Failure> 
     let target = output::folder_of(&args.output);
     let mut written: Vec<(PathBuf, Vec<u8>)> = Vec::new();
     // What stays beside the file goes with it; files that nothing names any more do not.
-    let still = Document::read(&new.container.text).and_then(|new| files_beside(&new)).map_err(at)?;
+    let still = Document::read(&new.container.text).and_then(|new| new.files()).map_err(at)?;
     for file in still.iter().filter(|file| beside.contains(file)) {
         let (from, to) = (folder.join(file), target.join(file));
         let same = from.canonicalize().ok().zip(to.canonicalize().ok()).is_some_and(|(from, to)| from == to);
@@ -122,20 +122,6 @@ fn check_kind(path: &Path, output: &Path, container: &Container) -> Result<(), F
         output.display(),
         path.display()
     )))
-}
-
-/// Files that the document names, each once.
-fn files_beside(document: &Document) -> Result<Vec<PathBuf>, Fault> {
-    let buffers = document.buffers.iter().map(|buffer| &buffer.uri);
-    let uris = buffers.chain(document.images.iter().map(|image| &image.uri)).flatten();
-    let mut files = Vec::new();
-    for uri in uris.filter(|uri| !uri.starts_with("data:")) {
-        let file = file_of(uri)?;
-        if !files.contains(&file) {
-            files.push(file);
-        }
-    }
-    Ok(files)
 }
 
 /// The bytes of a file.

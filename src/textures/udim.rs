@@ -2,14 +2,12 @@
 //! by itself, at its own size, and its edges are clamped: what lies beyond them is another part of the surface.
 
 use super::args::Args;
+use super::tile_names::{MARK, is_set, name_of, numbered};
 use crate::cli::normal_maps::WrapArg;
 use crate::exit::{Exit, Failure};
 use crate::output::folder_of;
 use crate::reading;
 use std::path::{Path, PathBuf};
-
-/// What stands for the number of a tile in a name.
-const MARK: &str = "<UDIM>";
 
 /// First and last number of a tile.
 const NUMBERS: std::ops::RangeInclusive<u32> = 1001..=9999;
@@ -78,26 +76,6 @@ pub fn tiles(args: &Args) -> Result<Option<Vec<Args>>, Failure> {
         tiles.push(tile);
     }
     Ok(Some(tiles))
-}
-
-fn is_set(path: &Path) -> bool {
-    path.file_name().is_some_and(|name| name.to_string_lossy().contains(MARK))
-}
-
-/// The file of a tile.
-fn numbered(path: &Path, number: u32) -> PathBuf {
-    if !is_set(path) {
-        return path.to_owned();
-    }
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    path.with_file_name(name.replace(MARK, &number.to_string()))
-}
-
-/// What names of a set's files begin with: the map's name without the number and what set it apart.
-fn name_of(map: &Path) -> String {
-    let stem = map.file_stem().unwrap_or_default().to_string_lossy().replace(MARK, "");
-    let name = stem.trim_matches(['.', '_', '-', ' ']);
-    if name.is_empty() { "textures".to_owned() } else { name.to_owned() }
 }
 
 /// Numbers of the tiles that lie in the folder, ascending.
