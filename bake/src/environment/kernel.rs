@@ -175,7 +175,7 @@ fn weigh_ggx_soft(places: &[[f32; 4]], d: &Directions, a: f32, b: f32, weights: 
             let q = a / (a + b * t);
             let p = q * q;
             let c = 1.0 - t;
-            let toe = (c + TOE).max(0.0).min(2.0 * TOE);
+            let toe = (c + TOE).clamp(0.0, 2.0 * TOE);
             let soft = toe * toe * (0.25 / TOE) + (c - TOE).max(0.0);
             // As above, and half the parabola's second derivative times Var t.
             let crossed = slope * spread(h) * q * toe * (0.5 / TOE);

@@ -103,7 +103,7 @@ pub fn errors_of(environment: &Environment, reads: &[Read]) -> [MeasuredReads; 2
 /// Error of pairs of what is read and what is exact.
 pub fn error_of(pairs: &[(f64, f64)]) -> MeasuredReads {
     let mean = pairs.iter().map(|pair| pair.1).sum::<f64>() / pairs.len().max(1) as f64;
-    if !(mean > 0.0) {
+    if mean <= 0.0 {
         return MeasuredReads { count: pairs.len() as u32, ..MeasuredReads::default() };
     }
     let root =
