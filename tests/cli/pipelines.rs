@@ -101,9 +101,13 @@ fn the_options_of_the_bazel_rules_are_those_of_the_project() {
 fn the_page_shows_what_the_example_says() {
     let page = fs::read_to_string(root().join("docs/PIPELINES.md")).unwrap();
     let project = fs::read_to_string(root().join("docs/examples/glint.toml")).unwrap();
-    let block = page.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+    let block_of = |begin: &str| {
+        let blocks = page.split("```toml\n").skip(1).map(|text| text.split("```").next().unwrap());
+        blocks.into_iter().find(|block| block.starts_with(begin)).unwrap()
+    };
+    let block = block_of("output = ");
     let scene = fs::read_to_string(root().join("docs/examples/scene.toml")).unwrap();
-    let of_scene = page.split("```toml\n").nth(2).unwrap().split("```").next().unwrap();
+    let of_scene = block_of("[scene]");
     for line in of_scene.lines().map(|line| line.split('#').next().unwrap().trim()).filter(|line| !line.is_empty()) {
         assert!(scene.contains(line), "{line}");
     }
