@@ -1,9 +1,10 @@
-//! Tiles and mips that were left out change nothing for footprints that do not read them.
+//! Windows and mips that were left out change nothing for footprints that do not read them.
 
 use glam::{DVec2, Vec2};
 use glint_bake_core::area_light::baked::Maps;
 use glint_bake_core::area_light::eval::fetch;
 use glint_bake_core::area_light::{self, AreaLightOptions};
+use glint_bake_core::footprint::Footprint;
 use glint_bake_core::ndf_maps::bake::bake_maps;
 use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::eval::EvalSettings;
@@ -27,35 +28,39 @@ fn map(width: u32, height: u32) -> NormalMap {
 }
 
 #[test]
-fn wide_footprints_read_the_same_tiles() {
+fn wide_footprints_read_the_same_nodes() {
     let map = map(32, 16);
-    let material = |min_tile: u32| {
-        let options = NdfMapsOptions { roughness: 0.1, max_error: 0.05, min_tile, ..NdfMapsOptions::default() };
+    let material = |finest_window: f64| {
+        let options = NdfMapsOptions { roughness: 0.1, max_error: 0.05, finest_window };
         let placement = place(&map, 0.1, &PlacementOptions::Tiled(TransformRanges::default())).unwrap();
         Material { maps: bake_maps(&map, &options, &Silent).unwrap(), placement }
     };
-    let (all, some) = (material(2), material(8));
-    let edges = |material: &Material| material.maps.params.levels.iter().map(|l| l.tile_texels).collect::<Vec<_>>();
-    assert_eq!((edges(&all), edges(&some)), (vec![2, 4, 8, 16, 32], vec![8, 16, 32]));
-    let shift = all.maps.params.levels[2].first_tile;
+    // Four times the variance: two levels fewer.
+    let (all, some) = (material(1.0), material(2.0));
+    let grids =
+        |material: &Material| material.maps.params.levels.iter().map(|l| [l.nodes_x, l.nodes_y]).collect::<Vec<_>>();
+    assert_eq!(grids(&all)[2..], grids(&some));
+    let shift = all.maps.params.levels[2].first_node;
     let at = DVec2::new(320.0, 160.0);
-    for sigma in [8.0, 11.0, 20.0] {
+    for sigma in [2.0, 3.0, 8.0, 20.0] {
         for footprint in footprints(sigma, 2.0, at, 16, 3) {
-            let whole = all.gather(&footprint, EvalSettings::default()).tiles;
-            let part = some.gather(&footprint, EvalSettings::default()).tiles;
-            assert!(!whole.is_empty() && whole.len() == part.len());
-            for (a, b) in whole.iter().zip(&part) {
-                assert_eq!((a.tile, a.weight), (b.tile + shift, b.weight));
+            let whole = all.gather(&footprint, EvalSettings::default());
+            let part = some.gather(&footprint, EvalSettings::default());
+            assert!(!whole.nodes.is_empty() && whole.nodes.len() == part.nodes.len());
+            assert!(whole.patches.is_empty() && part.patches.is_empty());
+            for (a, b) in whole.nodes.iter().zip(&part.nodes) {
+                assert_eq!((a.node, a.weight), (b.node + shift, b.weight));
             }
         }
     }
-    // Narrower ones see lobes instead: as many as there are, and still a whole.
-    for footprint in footprints(1.0, 1.0, at, 8, 4) {
-        let terms = some.gather(&footprint, EvalSettings::default());
-        assert!(!terms.is_empty());
-        let share: f32 = terms.tiles.iter().map(|term| term.weight).sum();
-        assert!(terms.lobes.len() > 1 || (share - 1.0).abs() < 1e-4);
-    }
+    // Narrower ones see patches of the map instead; in part where they are little narrower, from 1 to 0.7 of the variance.
+    let share = |sigma: f64| {
+        let terms = some.gather(&Footprint::new(at, sigma, 1.0, 0.3), EvalSettings::default());
+        (terms.nodes.iter().map(|term| term.weight).sum::<f32>(), terms.patches.len())
+    };
+    let ((none, patches), (a_third, more)) = (share(1.0), share(3.2f64.sqrt()));
+    assert!(none == 0.0 && patches > 1, "{none}, {patches} patches");
+    assert!((a_third - 1.0 / 3.0).abs() < 1e-3 && more > 1, "{a_third}, {more} patches");
 }
 
 #[test]

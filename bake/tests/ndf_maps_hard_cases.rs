@@ -61,17 +61,17 @@ fn hard_examples_stay_normalised_under_every_footprint() {
 }
 
 #[test]
-fn every_roughness_gives_normalised_tiles() {
+fn every_roughness_gives_normalised_nodes() {
     let map = map(8, 8, |i, j| [(i as f32 * 1.3).sin() * 0.4, (j as f32 * 0.9).cos() * 0.4]);
     for roughness in [1e-4, 1e-3, 0.05, 0.3, 1.0] {
         let options = NdfMapsOptions { roughness, max_error: 0.05, ..NdfMapsOptions::default() };
         let baked = bake_maps(&map, &options, &Silent).unwrap();
         assert!(baked.params.measured.energy < 1e-3, "σ_r {roughness}: {:?}", baked.params.measured);
         assert!(baked.params.measured.mean.is_finite());
-        for tile in 0..baked.tiles.len() as u32 {
+        for node in 0..baked.nodes.len() as u32 {
             for k in 0..50 {
                 let s = Vec2::from_angle(k as f32) * (k as f32 / 49.0);
-                let density = baked.tile_density(tile, s);
+                let density = baked.node_density(node, s);
                 assert!(density.is_finite() && density >= 0.0, "σ_r {roughness}: {density}");
             }
         }
@@ -107,6 +107,11 @@ fn options_without_meaning_are_refused_with_their_name() {
     assert!(refused(f64::NAN, 0.01).contains("roughness"));
     assert!(refused(0.02, 0.0).contains("error"));
     assert!(refused(0.02, f64::NAN).contains("error"));
+    for finest_window in [0.1, 1e4, f64::NAN] {
+        let options = NdfMapsOptions { finest_window, ..NdfMapsOptions::default() };
+        let error = bake_maps(&map, &options, &Silent).unwrap_err();
+        assert!(matches!(&error, BakeError::BadOption(what) if what.contains("finest window")), "{error}");
+    }
     let wide = TransformRanges { stretch: (1.0, 1.5), ..TransformRanges::default() };
     let error = place(&map, 0.02, &PlacementOptions::Tiled(wide)).unwrap_err();
     assert!(matches!(&error, BakeError::BadOption(what) if what.contains("stretch")), "{error}");

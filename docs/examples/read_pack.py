@@ -17,11 +17,11 @@ def f32(value):
     return next(float(t) for t in texts if struct.pack("<f", float(t)) == struct.pack("<f", value))
 
 
-# Types of parameters: a name of a number, "bool", "string", ("list", T), ("array", n, T), ("enum", variants), or a
-# dictionary of fields. A variant is its name, or (name, fields).
+# Types of parameters: a name of a number, "bool", "string", ("list", T), ("array", n, T), ("option", T), ("enum", variants), or
+# a dictionary of fields. A variant is its name, or (name, fields).
 NUMBERS = {"u8": "<B", "u16": "<H", "u32": "<I", "u64": "<Q", "f32": "<f", "f64": "<d"}
 WRAP = ("enum", ["Repeat", "Clamp"])
-LEVEL = dict(tile_texels="u32", tiles_x="u32", tiles_y="u32", first_tile="u32")
+LEVEL = dict(nodes_x="u32", nodes_y="u32", first_node="u32")
 CELLS = dict(cells_x="u32", cells_y="u32", cell_texels="f32", seed="u64")
 PAIR = ("array", 2, "f32")
 LOBES = dict(
@@ -36,21 +36,22 @@ PROVENANCE = dict(
 PARAMETERS = {
     "PROV": PROVENANCE,
     "NMPP": dict(
-        width="u32", height="u32", wrap=WRAP, intrinsic_roughness="f32",
-        storage=("enum", ["SqrtU8", "F16", "PaperF32"]), levels=("list", LEVEL), max_error="f32",
-        measured=dict(mean="f64", p95="f64", worst="f64", energy="f64")),
+        width="u32", height="u32", intrinsic_roughness="f32", finest_variance="f32", levels=("list", LEVEL),
+        max_error="f32", measured=dict(mean="f64", p95="f64", worst="f64", energy="f64"), node_errors=("list", "f32")),
     "PLPP": dict(kind=("enum", ["Tiled", ("Stochastic", CELLS)]), palette_len="u32"),
     "LAYR": dict(coat="string", base="string", coat_f0="f32", base_f0=("array", 3, "f32")),
     "SDPP": dict(
         marginals="u32", levels="u32", entries="u32", alpha_dict="f64", lobe_std="f64", domain="f64", seed="u64",
         measured=dict(normalisation="f64", mean_l1_first_level="f64", ks_last_level="f64")),
     "ENPP": dict(
-        face_size="u32", kernel=("enum", ["Ndf", "GgxNl"]),
+        face_size="u32", per_size="u32", kernel=("enum", ["Ndf", "GgxNl", "GgxSoft"]),
         roughness=("list", "f64"), radiance_scale="f64", levels=("list", "f64"),
         level_choice=("enum", ["Optimal", "LogUniform"]), coloured="bool", albedo_size="u32", source_width="u32",
-        source_height="u32", negative_pixels="u64", mean_radiance=("array", 3, "f64"), max_error="f64",
-        measured=dict(mips=("list", dict(rmse="f64", worst="f64")), texels="u32", energy="f64", second_moment="f64",
-                      rounding=("list", "f64"))),
+        source_height="u32", negative_pixels="u64", mean_radiance=("array", 3, "f64"), filter_error="f64",
+        max_error=("option", "f64"),
+        measured=dict(reads=("list", dict(count="u32", relative="f64", of_mean="f64", worst="f64")),
+                      texels=("list", dict(rmse="f64", worst="f64")), texels_measured="u32", energy="f64",
+                      second_moment="f64", rounding=("list", "f64"))),
     "ALPP": dict(
         width="u32", height="u32", wrap=WRAP, base_roughness="f32", storage=("enum", ["F16", "Snorm8"]),
         anisotropic="bool", measured=dict(normal_angle="f64", roughness="f64", table_mean="f64")),
@@ -66,7 +67,7 @@ PARAMETERS = {
         measured=dict(seam_ratio="f64", distinct_offsets="u32")),
 }
 KINDS = set(PARAMETERS) | set(
-    "NMUB NMTI NMDE NMNO PLNO PLCL LAUB SDUB SDTB ENUB ENMI ENRA ENIN ENCO ENAL ALUB ALNM ALRO ALLI ALLT LOUB LOBE LONM SYPO "
+    "NMUB NMND NMDE NMNO PLNO PLCL LAUB SDUB SDTB ENUB ENMI ENRA ENIN ENCO ENAL ALUB ALNM ALRO ALLI ALLT LOUB LOBE LONM SYPO "
     "SYSE".split())
 TEXEL_BYTES = {9: 1, 10: 1, 13: 1, 16: 2, 17: 2, 37: 4, 38: 4, 41: 4, 70: 2, 71: 2, 74: 2, 76: 2, 77: 4, 78: 4, 81: 4,
                83: 4, 91: 8, 92: 8, 95: 8, 97: 8, 98: 4, 100: 4, 101: 8, 103: 8, 107: 16, 109: 16, 122: 4, 123: 4}
@@ -101,6 +102,8 @@ class Decoder:
         if of[0] == "enum":
             variant = of[1][self.number("u32")]
             return variant if isinstance(variant, str) else {variant[0]: self.value(variant[1])}
+        if of[0] == "option":
+            return self.value(of[1]) if [False, True][self.number("u8")] else None
         count = of[1] if of[0] == "array" else self.number("u64")
         check(of[0] == "array" or count <= len(self.data), "a list is longer than its payload")
         return [self.value(of[-1]) for _ in range(count)]

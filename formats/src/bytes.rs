@@ -21,8 +21,3 @@ pub(crate) fn u64_at(bytes: &[u8], at: usize) -> u64 {
 pub(crate) fn f16_at(bytes: &[u8], at: usize) -> f32 {
     f16::from_bits(u16_at(bytes, at)).to_f32()
 }
-
-/// Little-endian float at `at`; the caller has checked the length.
-pub(crate) fn f32_at(bytes: &[u8], at: usize) -> f32 {
-    f32::from_bits(u32_at(bytes, at))
-}

@@ -69,10 +69,10 @@ issue_codes! {
     WrongDescriptor = 3003, "wrong resource descriptor for kind";
     NdfParameters = 3004, "NDF map parameter out of range";
     NdfLevels = 3005, "NDF map levels inconsistent";
-    NdfTileCount = 3006, "tile count differs from levels";
-    NdfTileOutOfDensity = 3007, "tile past end of density";
-    NdfTileValue = 3008, "tile value out of range";
-    NdfDensityValue = 3009, "density value out of range";
+    NdfNodeCount = 3006, "node count differs from levels";
+    NdfNodeOutOfAtlas = 3007, "node outside atlas";
+    NdfNodeValue = 3008, "node value out of range";
+    NdfNodeBorder = 3009, "texels around node not zero";
     PaletteLength = 3010, "palette length wrong";
     PaletteValue = 3011, "palette transform unusable";
     PlacementGrid = 3012, "placement grid out of range";

@@ -3,7 +3,7 @@
 use crate::samples::*;
 use glint_formats::Wrap;
 use glint_formats::container::{FourCc, Limits};
-use glint_formats::ndf_maps::{DensityStorage, PlacementKind, PlacementParams};
+use glint_formats::ndf_maps::{NodeRecord, PlacementKind, PlacementParams};
 use glint_formats::{Pack, Section, params, vk_format};
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -26,8 +26,8 @@ fn bincode_rules() {
     assert_eq!(params::encode(&(7u8, 8u16)), [7, 8, 0]);
     assert_eq!(params::encode(&Some(7u8)), [1, 7]);
     assert_eq!(params::encode(&None::<u8>), [0]);
-    assert_eq!(params::encode(&DensityStorage::PaperF32), [2, 0, 0, 0]);
     assert_eq!(params::encode(&Wrap::Repeat), [0, 0, 0, 0]);
+    assert_eq!(params::encode(&Wrap::Clamp), [1, 0, 0, 0]);
 }
 
 #[test]
@@ -48,20 +48,34 @@ fn enum_fields_follow_the_tag() {
 #[test]
 fn ndf_parameters_byte_by_byte() {
     let mut expected = Vec::new();
-    for word in [3u32, 2, 0] {
+    for word in [3u32, 2] {
         expected.extend_from_slice(&word.to_le_bytes());
     }
     expected.extend_from_slice(&0.01f32.to_le_bytes());
-    expected.extend_from_slice(&1u32.to_le_bytes());
+    expected.extend_from_slice(&0.5f32.to_le_bytes());
     expected.extend_from_slice(&2u64.to_le_bytes());
-    for word in [2u32, 2, 1, 0, 4, 1, 1, 2] {
+    for word in [2u32, 1, 0, 1, 1, 2] {
         expected.extend_from_slice(&word.to_le_bytes());
     }
     expected.extend_from_slice(&0.1f32.to_le_bytes());
     for error in [0.01f64, 0.02, 0.03, 0.001] {
         expected.extend_from_slice(&error.to_le_bytes());
     }
+    expected.extend_from_slice(&3u64.to_le_bytes());
+    for error in [0.01f32, 0.02, 0.03] {
+        expected.extend_from_slice(&error.to_le_bytes());
+    }
     assert_eq!(params::encode(&ndf_params()), expected);
+}
+
+#[test]
+fn a_node_byte_by_byte() {
+    let node =
+        NodeRecord { origin: 300 | 299 << 16, place: 7 | 1 << 16, shape: 2 | 3 << 8 | 4 << 16 | 5 << 24, scale: 1.0 };
+    let expected = [0x2c, 1, 0x2b, 1, 7, 0, 1, 0, 2, 3, 4, 5, 0, 0, 0x80, 0x3f];
+    assert_eq!(bytemuck::bytes_of(&node), expected);
+    assert_eq!((node.origin(), node.place()), ([300, 299], [7, 1]));
+    assert_eq!((node.size(), node.spacing()), ([2, 3], [4, 5]));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::samples::*;
 use glint_formats::container::{FourCc, Limits};
 use glint_formats::dictionary::{self, DictionaryParams};
-use glint_formats::ndf_maps::{DENSITY, LAYERS, NdfMapsParams, PARAMS, UNIFORM};
+use glint_formats::ndf_maps::{DENSITY, LAYERS, NODES, NdfMapsParams, PARAMS, UNIFORM};
 use glint_formats::provenance::{PROVENANCE, Provenance};
 use glint_formats::{Codec, FormatError, OpenError, Pack, PackBuilder, Resource, Section, Severity, params, validate};
 use std::borrow::Cow;
@@ -27,8 +27,9 @@ fn sections_come_back() {
     let read = |kind, name: &str| pack.payload(pack.find(kind, name).unwrap()).unwrap();
     assert_eq!(params::decode::<Provenance>(&read(PROVENANCE, "")).unwrap(), provenance());
     assert_eq!(params::decode::<NdfMapsParams>(&read(PARAMS, ROCK)).unwrap(), ndf_params());
-    assert_eq!(&*read(UNIFORM, ROCK), uniform(&ndf_params(), &stochastic(2, 2), &palette(), &tiles()));
-    assert_eq!(&*read(DENSITY, ROCK), bytemuck::cast_slice::<_, u8>(&density()));
+    assert_eq!(&*read(UNIFORM, ROCK), uniform(&ndf_params(), &stochastic(2, 2), &palette()));
+    assert!(read(NODES, ROCK).starts_with(bytemuck::cast_slice(&nodes())));
+    assert_eq!(&*read(DENSITY, ROCK), density());
     assert_eq!(params::decode::<DictionaryParams>(&read(dictionary::PARAMS, "lobes")).unwrap(), dictionary_params());
     assert_eq!(
         &*read(dictionary::TABLE, "lobes"),

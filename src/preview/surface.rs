@@ -10,10 +10,6 @@ use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::eval::{EvalSettings, matrix};
 use glint_formats::ndf_maps::TransformRecord;
 
-/// Tiles may be four times as large, against the footprint, as where accuracy is measured: an eye sees no difference,
-/// and a footprint needs some ten tiles in place of hundreds.
-const SETTINGS: EvalSettings =
-    EvalSettings { tile_sigmas: 4.0, lobe_sigmas: 1.0, max_terms: 32, splits: 0, reach: 2.8, probes: 0 };
 /// Mean density of a placed example below which nothing is looked up: even its rare glints would be faint.
 const FAINT: f32 = 0.004;
 
@@ -77,13 +73,13 @@ impl Surface<'_> {
 }
 
 impl Layer<'_> {
-    /// Whether any placed example has normals near `s`: what the tile of the whole example lacks, no part of it has.
+    /// Whether any placed example has normals near `s`: what the node of the whole example lacks, no part of it has.
     /// Most of a picture lies outside the highlight and is done with here.
     fn reaches(&self, s: Vec2) -> bool {
         let Material { maps, placement } = self.material;
         let Some(top) = maps.params.levels.last() else { return false };
         let seen = |transform: &TransformRecord| {
-            maps.tile_density(top.first_tile, matrix(transform.normal_to_local) * s) > FAINT
+            maps.node_density(top.first_node, matrix(transform.normal_to_local) * s) > FAINT
         };
         placement.palette.iter().any(seen)
     }
@@ -93,7 +89,7 @@ impl Layer<'_> {
         if !self.reaches(s) {
             return Vec3::ZERO;
         }
-        let terms = self.material.gather(footprint, SETTINGS);
+        let terms = self.material.gather(footprint, EvalSettings::REAL_TIME);
         let density = self.material.density(&terms, s);
         let n_h = g.half.z;
         let masking = (2.0 * n_h * g.n_v / g.v_h).min(2.0 * n_h * g.n_l / g.v_h).min(1.0);

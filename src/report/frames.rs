@@ -141,9 +141,10 @@ mod with_viewer {
              rounds of integer products in a row; a rotation",
         );
         table.row(
-            "NDF maps | a tile: nine texels in one 16-byte load, two 16-byte loads of its place; random placement: four places or \
-             more, each one tile, and for it one 16-byte load of its owner and two of its transform; one word of a mask outside \
-             the highlight | a tile: two splines; a box: four error functions",
+            "NDF maps | a node: one 16-byte load of its place, one gather of four texels; three nodes a probe, of two levels in one \
+             probe of a footprint; random placement: one to four examples a probe, and for each one 16-byte load of its owner and two \
+             of its transform; a patch of the map below the finest windows: four 4-byte loads of normals; one word of a mask outside \
+             the highlight | a node: a bilinear blend; a patch: exponentials and error functions",
         );
         table.row(
             "lobes, surfaces | one 8-byte load a bilinear patch of the finest level and one more for each row of them, one \

@@ -40,7 +40,7 @@ pub struct Report {
 pub const REPORTS: [Report; 10] = [
     Report {
         name: "ndf-maps",
-        about: "NDF maps of small examples: bytes, time and error of tiles, footprints and run-time settings",
+        about: "NDF maps of small examples: bytes, time and error of nodes, footprints and run-time settings",
         check: ndf_maps::check,
         measure: ndf_maps::measure,
     },

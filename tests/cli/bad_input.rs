@@ -96,7 +96,7 @@ fn bad_arguments_are_usage_errors() {
         (&["flakes.png", "--roughness", "0"][..], "--roughness"),
         (&["flakes.png", "--roughness", "3"], "--roughness"),
         (&["flakes.png", "--max-error", "nan"], "--max-error"),
-        (&["flakes.png", "--storage", "u7"], "--storage"),
+        (&["flakes.png", "--finest-window", "0"], "--finest-window"),
         (&["flakes.png", "--crop", "0x8+0+0"], "--crop"),
         (&["flakes.png", "--name", "a", "--name", "b"], "--name"),
         (&["flakes.png", "scratches.png", "--name", "a", "--name", "a"], "given twice"),

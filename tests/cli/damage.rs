@@ -9,7 +9,7 @@ fn baked() -> Vec<Vec<u8>> {
     let folder = maps();
     sky(&folder.path().join("sky.hdr"));
     let packs: [&[&str]; 3] = [
-        &["ndf-maps", "flakes.png", "--storage", "f16", "--max-error", "0.1"],
+        &["ndf-maps", "flakes.png", "--finest-window", "2", "--max-error", "0.2"],
         &["environment", "sky.hdr", "--face-size", "4", "--levels", "3"],
         &["dictionary", "--marginals", "4", "--levels", "3", "--entries", "16", "--lobe-std", "0.04"],
     ];

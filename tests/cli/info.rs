@@ -13,7 +13,7 @@ fn text_shows_what_a_user_asks_for() {
     for part in [
         "glintpack version 1.0",
         "NMDE \"flakes\"",
-        "8 × 8 texels, repeat",
+        "8 × 8 texels\n",
         "paper's layout 1,344 KiB",
         "E₁ mean",
         "energy",
@@ -112,11 +112,11 @@ fn plots_are_pictures() {
     bake(folder.path(), &args).ok();
     info(folder.path(), &["out.glintpack", "--plot", "plots", "-q"]).ok();
     let size = |name: &str| image::open(folder.path().join("plots").join(name)).unwrap().to_rgb8().dimensions();
-    // Four tiles of 2 texels a row, and one of 8.
-    assert_eq!(size("0-a_b-tiles-2.png"), (1024, 1024));
-    assert_eq!(size("0-a_b-tiles-8.png"), (320, 320));
+    // Nine nodes of the finest windows a row, in ten rows, and one of the whole example.
+    assert_eq!(size("0-a_b-nodes-0.png"), (918, 1020));
+    assert_eq!(size("0-a_b-nodes-5.png"), (320, 320));
     assert_eq!(size("0-a_b-normals.png"), (128, 128));
     assert_eq!(size("0-a_b-placement.png"), (768, 768));
     let svg = fs::read_to_string(folder.path().join("plots/0-a_b-errors.svg")).unwrap();
-    assert!(svg.starts_with("<svg") && svg.contains("E₁ of 21 tiles") && svg.ends_with("</svg>\n"));
+    assert!(svg.starts_with("<svg") && svg.contains("E₁ of 201 nodes") && svg.ends_with("</svg>\n"));
 }

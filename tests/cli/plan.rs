@@ -54,7 +54,7 @@ fn what_is_planned_is_built_and_remembered() {
     // The pack says what was left out.
     let report = json(&info(folder.path(), &["packs/flakes.glintpack", "--json"]).ok().stdout);
     let options = report["provenance"][0]["options"].to_string();
-    assert!(plan.contains("--min-tile=8") && options.contains("min-tile"), "{plan}{options}");
+    assert!(plan.contains("--finest-window=8") && options.contains("finest-window"), "{plan}{options}");
 
     // Nothing is drafted again, and nothing baked, until something changes.
     assert_eq!(bake(folder.path(), &["build"]).ok().stderr, "0 written, 5 up to date\n");

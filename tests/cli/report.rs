@@ -72,17 +72,16 @@ fn a_page_of_the_users_maps_has_its_tables_and_its_plot() {
         "`glint-bake report ndf-maps --maps leather.png --crop 4x4+2+1 --colour-space linear --footprints 2 -o out --quick`",
         "## leather, 4 × 4",
         "](ndf-maps-leather.svg)",
-        "the paper's layout",
         "| tiled | 0.5 | 1 |",
         "| stochastic | 32 | 4 |",
         "★",
     ] {
         assert!(text.contains(part), "{part} is missing from:\n{text}");
     }
-    // Eight settings: those on the front filled, the others white disks with a rim, and one dot in the legend.
+    // Six settings: those on the front filled, the others white disks with a rim, and one dot in the legend.
     let plot = fs::read_to_string(folder.path().join("out/ndf-maps-leather.svg")).unwrap();
     let off = plot.lines().filter(|line| line.starts_with("<circle") && line.contains("fill=\"#FFFFFF\"")).count();
-    assert_eq!(plot.matches("<circle").count() - off, 8 + 1);
+    assert_eq!(plot.matches("<circle").count() - off, 6 + 1);
 }
 
 #[test]

@@ -1,19 +1,21 @@
-//! From an example to its multi-scale NDF maps: a pyramid of tiles, each with a box and a resolution of its own.
+//! From an example to its NDF maps: nodes prefiltered by Gaussian windows, each with a table of its own.
 //!
-//! Xing et al. 2024, section 5.2: level l divides the example in tiles of 2^(l+1) texels, down to one tile. Examples of
-//! any size are allowed; tiles at the right and lower edge are cut.
+//! Xing et al. 2024, section 5.2, has square tiles of 2, 4, 8, … texels. Windows follow the footprints that read them: they overlap,
+//! and grow by √2 from level to level.
 
+use super::atlas;
 use super::baked::{BakedNdfMaps, Material};
-use super::fine_grid::LobeNorm;
-use super::micro_normals::TexelRect;
-use super::options::{FINEST_TILE, NdfMapsOptions, Options, WORST_OF_MEAN};
+use super::fine_grid::{FineGrid, LobeNorm, micro_normals};
+use super::options::{NdfMapsOptions, Options, WORST_OF_MEAN};
 use super::placement;
-use super::tile_fit::{self, FitSettings, FittedTile};
+use super::table_fit::{FittedTable, fit_node};
+use super::windows::{Window, levels};
 use crate::error::Result;
 use crate::normal_map::NormalMap;
 use crate::progress::Progress;
 use crate::quality::metrics::Summary;
-use glint_formats::ndf_maps::{Level, MeasuredError, NdfMapsParams, TileRecord};
+use glint_formats::Wrap;
+use glint_formats::ndf_maps::{Level, MeasuredError, NdfMapsParams, NodeRecord};
 use rayon::prelude::*;
 
 /// Part of the error asked for that the bake uses up: its fine grid agrees with the exact integral to a few per cent of
@@ -32,120 +34,115 @@ pub fn bake(map: &NormalMap, options: &Options, progress: &dyn Progress) -> Resu
 /// Bakes the maps of one example.
 ///
 /// # Errors
-/// An option out of range, or an example that is too large.
+/// An option out of range, an example that is too large, or tables that do not fit in a texture.
 pub fn bake_maps(map: &NormalMap, options: &NdfMapsOptions, progress: &dyn Progress) -> Result<BakedNdfMaps> {
     options.check(map)?;
-    let levels = levels(map.width, map.height, options.min_tile);
-    let rects: Vec<TexelRect> = levels.iter().flat_map(|level| tile_rects(map, level)).collect();
-    let settings = FitSettings {
-        roughness: options.roughness,
-        max_error: options.max_error,
-        storage: options.storage,
-        norm: LobeNorm::new(options.roughness),
-    };
-    progress.begin("NDF maps", rects.len() as u64);
-    let candidates: Vec<Vec<FittedTile>> = rects
+    let map = &repeating(map);
+    let levels = levels(map.width, map.height, options.finest_window);
+    let windows = windows(map, &levels, options.finest_window * options.finest_window);
+    let norm = LobeNorm::new(options.roughness);
+    let normals = micro_normals(map, options.roughness);
+    progress.begin("NDF maps", windows.len() as u64);
+    let candidates: Vec<Vec<FittedTable>> = windows
         .par_iter()
-        .map(|rect| {
-            let tiles = tile_fit::fit_tile(map, *rect, &settings);
+        .map(|window| {
+            let tables = fit_node(&FineGrid::new(&normals, window, options.roughness, &norm), options.max_error);
             progress.advance(1);
-            tiles
+            tables
         })
         .collect();
     progress.end();
-    let fitted = choose(candidates, USED * options.max_error);
-
-    let texel_bytes = options.storage.texel_bytes() as usize;
-    let mut tiles = Vec::with_capacity(fitted.len());
-    let mut density = Vec::new();
-    for tile in &fitted {
-        tiles.push(TileRecord {
-            origin: tile.origin.map(|v| v as f32),
-            inv_spacing: tile.spacing.map(|v| (1.0 / v) as f32),
-            scale: tile.scale,
-            first: (density.len() / texel_bytes) as u32,
-            size: tile.width as u32 | (tile.height as u32) << 16,
-            error: tile.error as f32,
-        });
-        density.extend_from_slice(&tile.bytes);
-    }
-    let errors = Summary::of(fitted.iter().map(|t| t.error).collect());
-    let energy = fitted.iter().fold(0.0f64, |a, t| a.max(t.energy));
+    let fitted = choose(&levels, candidates, USED * options.max_error);
+    let atlas = atlas::pack(&fitted)?;
+    let pair = |[x, y]: [u32; 2]| x | y << 16;
+    let record = |(table, place): (&FittedTable, &[u32; 2])| NodeRecord {
+        origin: pair(table.origin),
+        place: pair(*place),
+        shape: table.size[0] as u32 | (table.size[1] as u32) << 8 | table.spacing[0] << 16 | table.spacing[1] << 24,
+        scale: table.scale,
+    };
+    let errors: Vec<f64> = fitted.iter().map(|table| table.error).collect();
+    let summary = Summary::of(errors.clone());
+    let measured = MeasuredError {
+        mean: shares(&levels).zip(&errors).map(|(share, error)| share * error).sum(),
+        p95: summary.p95,
+        worst: summary.worst,
+        energy: fitted.iter().fold(0.0f64, |a, table| a.max(table.energy)),
+    };
     let snorm = |v: f32| (v.clamp(-1.0, 1.0) * 32767.0).round() as i16;
     Ok(BakedNdfMaps {
         params: NdfMapsParams {
             width: map.width,
             height: map.height,
-            wrap: map.wrap,
             intrinsic_roughness: options.roughness as f32,
-            storage: options.storage,
+            finest_variance: (options.finest_window * options.finest_window) as f32,
             levels,
             max_error: options.max_error as f32,
-            measured: MeasuredError { mean: errors.mean, p95: errors.p95, worst: errors.worst, energy },
+            measured,
+            node_errors: errors.iter().map(|error| *error as f32).collect(),
         },
-        tiles,
-        density,
+        nodes: fitted.iter().zip(&atlas.places).map(record).collect(),
+        atlas_size: atlas.size,
+        atlas: atlas.texels,
         normals: map.projected.iter().map(|s| s.map(snorm)).collect(),
     })
 }
 
-/// One candidate a tile: the fewest bytes whose mean error is at most `max_error`, no tile over [`WORST_OF_MEAN`] times
-/// that. Candidates are sorted by error. With a price λ on error, each tile takes the cheapest bytes + λ · error; the
+/// The map as copies of it lie on a surface, side by side: beyond its edge is the other one.
+pub(super) fn repeating(map: &NormalMap) -> NormalMap {
+    NormalMap { wrap: Wrap::Repeat, ..map.clone() }
+}
+
+/// The windows of all nodes, in their order.
+pub(super) fn windows(map: &NormalMap, levels: &[Level], finest_variance: f64) -> Vec<Window> {
+    let mut variance = finest_variance;
+    let mut windows = Vec::new();
+    for level in levels {
+        let of_node = |k: u32| Window::new(map.width, map.height, level, variance, k);
+        windows.extend((0..level.nodes_x * level.nodes_y).map(of_node));
+        variance *= 2.0;
+    }
+    windows
+}
+
+/// What each node counts in the mean error: all levels alike.
+fn shares(levels: &[Level]) -> impl Iterator<Item = f64> {
+    let count = levels.len() as f64;
+    levels.iter().flat_map(move |level| {
+        let nodes = level.nodes();
+        (0..nodes).map(move |_| 1.0 / (count * nodes as f64))
+    })
+}
+
+/// One candidate a node: the fewest bytes whose mean error is at most `max_error`, no node over [`WORST_OF_MEAN`] times
+/// that. Candidates are sorted by error. With a price λ on error, each node takes the cheapest bytes + λ · error · share; the
 /// smallest λ that keeps the mean is found by bisection.
-fn choose(candidates: Vec<Vec<FittedTile>>, max_error: f64) -> Vec<FittedTile> {
-    let pick = |tiles: &[FittedTile], price: f64| {
-        let cost = |t: &FittedTile| t.bytes.len() as f64 + price * t.error / max_error;
+fn choose(levels: &[Level], candidates: Vec<Vec<FittedTable>>, max_error: f64) -> Vec<FittedTable> {
+    let shares: Vec<f64> = shares(levels).collect();
+    let pick = |tables: &[FittedTable], price: f64| {
+        let cost = |t: &FittedTable| t.bytes() as f64 + price * t.error / max_error;
         let mut best = 0;
-        for (k, tile) in tiles.iter().enumerate() {
-            if tile.error <= WORST_OF_MEAN * max_error && cost(tile) < cost(&tiles[best]) {
+        for (k, table) in tables.iter().enumerate() {
+            if table.error <= WORST_OF_MEAN * max_error && cost(table) < cost(&tables[best]) {
                 best = k;
             }
         }
         best
     };
     let mean = |price: f64| {
-        let total: f64 = candidates.iter().map(|tiles| tiles[pick(tiles, price)].error).sum();
-        total / candidates.len() as f64
+        let error = |(tables, share): (&Vec<FittedTable>, &f64)| share * tables[pick(tables, price * share)].error;
+        candidates.iter().zip(&shares).map(error).sum::<f64>()
     };
     // Prices in bytes for one `max_error` of error.
-    let (mut low, mut high) = (0.0, 1e9);
+    let (mut low, mut high) = (0.0, 1e12);
     if mean(low) > max_error {
-        for _ in 0..60 {
+        for _ in 0..80 {
             let middle = 0.5 * (low + high);
             if mean(middle) > max_error { low = middle } else { high = middle }
         }
     } else {
         high = 0.0;
     }
-    candidates.into_iter().map(|mut tiles| tiles.swap_remove(pick(&tiles, high))).collect()
-}
-
-/// Levels of a `width` × `height` example: tiles of `min_tile` (a power of two), twice that, … texels, up to the one tile that
-/// covers it, which is always the last level.
-pub fn levels(width: u32, height: u32, min_tile: u32) -> Vec<Level> {
-    let covering = width.max(height).next_power_of_two();
-    let mut levels = Vec::new();
-    let (mut tile_texels, mut first_tile) = (min_tile.min(covering).max(FINEST_TILE), 0);
-    loop {
-        let (tiles_x, tiles_y) = (width.div_ceil(tile_texels), height.div_ceil(tile_texels));
-        levels.push(Level { tile_texels, tiles_x, tiles_y, first_tile });
-        if tiles_x * tiles_y == 1 {
-            return levels;
-        }
-        first_tile += tiles_x * tiles_y;
-        tile_texels *= 2;
-    }
-}
-
-/// The texels of each tile of a level, row by row.
-pub(super) fn tile_rects(map: &NormalMap, level: &Level) -> Vec<TexelRect> {
-    let mut rects = Vec::new();
-    for y in 0..level.tiles_y {
-        for x in 0..level.tiles_x {
-            let min = [x * level.tile_texels, y * level.tile_texels];
-            let max = [(min[0] + level.tile_texels).min(map.width), (min[1] + level.tile_texels).min(map.height)];
-            rects.push(TexelRect { min, max });
-        }
-    }
-    rects
+    let chosen = candidates.into_iter().zip(&shares);
+    chosen.map(|(mut tables, share)| tables.swap_remove(pick(&tables, high * share))).collect()
 }

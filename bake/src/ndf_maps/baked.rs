@@ -1,6 +1,6 @@
 //! What a bake of NDF maps makes: the maps of one example, and how a surface is covered with it.
 
-use glint_formats::ndf_maps::{NdfMapsParams, NoiseTexel, PlacementParams, TileRecord, TransformRecord};
+use glint_formats::ndf_maps::{NdfMapsParams, NodeRecord, NoiseTexel, PlacementParams, TransformRecord};
 
 /// A material: one example's maps and how they cover the surface.
 #[derive(Clone, Debug)]
@@ -16,19 +16,14 @@ pub struct Material {
 pub struct BakedNdfMaps {
     /// Parameters.
     pub params: NdfMapsParams,
-    /// One record a tile, by level, row and column.
-    pub tiles: Vec<TileRecord>,
-    /// Encoded density texels of all tiles, tile after tile, row-major.
-    pub density: Vec<u8>,
+    /// One record a node, by level, row and column.
+    pub nodes: Vec<NodeRecord>,
+    /// Width and height of the atlas in texels.
+    pub atlas_size: [u32; 2],
+    /// Roots of densities of all nodes' tables, row-major.
+    pub atlas: Vec<u8>,
     /// Projected normals of the example, snorm16, row-major.
     pub normals: Vec<[i16; 2]>,
-}
-
-impl BakedNdfMaps {
-    /// Bytes of tile records, encoded densities and normals, each texel once.
-    pub fn compact_bytes(&self) -> usize {
-        self.tiles.len() * size_of::<TileRecord>() + self.density.len() + self.normals.len() * 4
-    }
 }
 
 /// A placement.

@@ -1,20 +1,20 @@
-//! A tile's exact NDF on a fine grid: micro-normals binned and convolved with the intrinsic lobe.
+//! A node's exact NDF on a fine grid: micro-normals binned and convolved with the intrinsic lobe.
 //!
 //! A normal close to the horizon carries a lobe of standard deviation σ_r whose tail would leave the disk of projected normals.
 //! The NDF of a single normal n is therefore the Gaussian divided by its mass inside the disk, so that it integrates to one.
 
-use super::micro_normals::{self, TexelRect};
-use super::spline::add_scaled;
+use super::hats::add_scaled;
+use super::micro_normals::MicroNormals;
+use super::windows::Window;
 use crate::normal_map::NormalMap;
 use glam::DVec2;
+use glint_formats::ndf_maps::STEPS_PER_ROUGHNESS;
 use multiversion::multiversion;
 use std::ops::Range;
 
-/// Fine grid nodes per σ_r.
-const FINE_PER_SIGMA: f64 = 3.0;
 /// How far the box reaches beyond the outermost normal, in σ_r: 0.05 % of a lobe's mass lies farther out.
 const MARGIN_SIGMAS: f64 = 3.5;
-/// Largest fine grid along one axis; a smaller σ_r than this resolves is widened, which the measured error shows.
+/// Points of the fine grid along one axis at most; a smaller σ_r than they resolve is widened, which the measured error shows.
 const MAX_FINE: usize = 768;
 /// Micro-normal samples per σ_r along a path through the disk.
 const SAMPLES_PER_SIGMA: f64 = 2.5;
@@ -74,54 +74,98 @@ fn mass_in_disk(radius: f64, sigma: f64) -> f64 {
     sum * h / 3.0
 }
 
-/// A tile's exact density at the nodes of a fine grid.
+/// The micro-normals of an example, dense enough for lobes of standard deviation `sigma`.
+pub(super) fn micro_normals(map: &NormalMap, sigma: f64) -> MicroNormals {
+    MicroNormals::new(map, sigma / SAMPLES_PER_SIGMA, MAX_SAMPLES)
+}
+
+/// A node's exact density at the points of a fine grid.
 pub(super) struct FineGrid {
-    /// First node.
+    /// Steps of the node records from s = (−1, −1) to the first point.
+    pub first: [u32; 2],
+    /// Steps between points.
+    pub step: u32,
+    /// First point.
     pub origin: DVec2,
-    /// Distance of nodes.
+    /// Distance of points.
     pub spacing: f64,
-    /// Nodes in a row.
+    /// Points in a row.
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// Density at the nodes, row-major.
+    /// Density at the points, row-major.
     pub density: Vec<f32>,
 }
 
 impl FineGrid {
-    /// Bins the tile's micro-normals (cloud in cell) and convolves with the lobe of standard deviation `sigma`.
-    pub fn new(map: &NormalMap, rect: TexelRect, sigma: f64, norm: &LobeNorm) -> FineGrid {
-        let (lo, hi) = micro_normals::bounds(map, rect);
+    /// Bins the micro-normals under a window (cloud in cell) and convolves with the lobe of standard deviation `sigma`.
+    pub fn new(normals: &MicroNormals, window: &Window, sigma: f64, norm: &LobeNorm) -> FineGrid {
+        let (lo, hi) = normals.bounds(window);
         let margin = DVec2::splat(MARGIN_SIGMAS * sigma);
-        let origin = (lo - margin).max(DVec2::splat(-1.0));
-        let extent = (hi + margin).min(DVec2::splat(1.0)) - origin;
-        let spacing = (sigma / FINE_PER_SIGMA).max(extent.max_element() / (MAX_FINE - 2) as f64);
-        let nodes = |length: f64| (length / spacing).ceil() as usize + 2;
-        let (width, height) = (nodes(extent.x), nodes(extent.y));
+        let low = (lo - margin).max(DVec2::splat(-1.0));
+        let extent = (hi + margin).min(DVec2::splat(1.0)) - low;
+        let unit = sigma / f64::from(STEPS_PER_ROUGHNESS);
+        let step = (extent.max_element() / (unit * (MAX_FINE - 3) as f64)).ceil().max(1.0);
+        let spacing = step * unit;
+        let first = ((low + 1.0) / unit).floor().to_array().map(|v| v as u32);
+        let origin = DVec2::new(f64::from(first[0]), f64::from(first[1])) * unit - 1.0;
+        let points = |length: f64| (length / spacing).ceil() as usize + 3;
+        let (width, height) = (points(extent.x), points(extent.y));
 
-        // The lobes' tails outside the box would come back by the convolution only from nodes inside it, which is all
+        // The lobes' tails outside the box would come back by the convolution only from points inside it, which is all
         // there is: every micro-normal lies inside.
         let mut bins = vec![0.0f32; width * height];
-        let sample_spacing = spacing.max(sigma) / SAMPLES_PER_SIGMA;
-        let per_area = 1.0 / (spacing * spacing);
-        micro_normals::for_each_sample(map, rect, sample_spacing, MAX_SAMPLES, |s, weight| {
+        let mut total = 0.0;
+        normals.for_each_sample(window, |s, weight| {
             let p = (s - origin) / spacing;
             let (i, j) = ((p.x as usize).min(width - 2), (p.y as usize).min(height - 2));
             let (fx, fy) = ((p.x - i as f64) as f32, (p.y - j as f64) as f32);
-            let w = (weight * per_area * norm.reciprocal_mass(s.length())) as f32;
+            let w = (weight * norm.reciprocal_mass(s.length())) as f32;
+            total += weight;
             let at = j * width + i;
             bins[at] += w * (1.0 - fx) * (1.0 - fy);
             bins[at + 1] += w * fx * (1.0 - fy);
             bins[at + width] += w * (1.0 - fx) * fy;
             bins[at + width + 1] += w * fx * fy;
         });
+        let per_area = (1.0 / (total * spacing * spacing)) as f32;
+        bins.iter_mut().for_each(|bin| *bin *= per_area);
         // Cloud in cell widens by spacing² / 6 along each axis; the lobe makes up the rest of σ_r².
         let variance = (sigma * sigma - spacing * spacing / 6.0).max(0.0);
         let density = gaussian_blur(&bins, width, height, variance.sqrt() / spacing);
-        FineGrid { origin, spacing, width, height, density }
+        FineGrid { first, step: step as u32, origin, spacing, width, height, density }
     }
 
-    /// Columns of row `j` whose nodes lie inside the unit disk; None when there are none.
+    /// The columns and rows that hold all but `part` of the density beyond each side, and what lies beyond them as a part of all.
+    pub fn core(&self, part: f64) -> ([Range<usize>; 2], f64) {
+        let columns: Vec<f64> = (0..self.width)
+            .map(|i| (0..self.height).map(|j| f64::from(self.density[j * self.width + i])).sum())
+            .collect();
+        let rows: Vec<f64> =
+            self.density.chunks_exact(self.width).map(|row| row.iter().map(|v| f64::from(*v)).sum()).collect();
+        let total: f64 = rows.iter().sum();
+        let range = |sums: &[f64]| {
+            let skipped = |sums: &mut dyn Iterator<Item = &f64>| {
+                let mut left = part * total;
+                sums.take_while(|sum| {
+                    left -= **sum;
+                    left >= 0.0
+                })
+                .count()
+            };
+            let first = skipped(&mut sums.iter()).min(sums.len() - 2);
+            let last = skipped(&mut sums.iter().rev()).min(sums.len() - 2 - first);
+            first..sums.len() - last
+        };
+        let core = [range(&columns), range(&rows)];
+        let kept: f64 = core[1]
+            .clone()
+            .map(|j| self.density[j * self.width..][core[0].clone()].iter().map(|v| f64::from(*v)).sum::<f64>())
+            .sum();
+        (core, 1.0 - kept / total.max(f64::MIN_POSITIVE))
+    }
+
+    /// Columns of row `j` whose points lie inside the unit disk; None when there are none.
     pub fn columns_inside(&self, j: usize) -> Option<Range<usize>> {
         let y = self.origin.y + j as f64 * self.spacing;
         let half = (1.0 - y * y).max(0.0).sqrt();
@@ -132,25 +176,9 @@ impl FineGrid {
         }
         Some(first..(last as usize + 1).min(self.width))
     }
-
-    /// The density at `s`, interpolated bilinearly between fine nodes, zero outside.
-    pub fn at(&self, s: DVec2) -> f32 {
-        let p = (s - self.origin) / self.spacing;
-        let cell = p.floor();
-        if cell.x < 0.0 || cell.y < 0.0 || cell.x >= (self.width - 1) as f64 || cell.y >= (self.height - 1) as f64 {
-            return 0.0;
-        }
-        let (i, j) = (cell.x as usize, cell.y as usize);
-        let f = (p - cell).as_vec2();
-        let row = |j: usize| {
-            let at = j * self.width + i;
-            self.density[at] * (1.0 - f.x) + self.density[at + 1] * f.x
-        };
-        row(j) * (1.0 - f.y) + row(j + 1) * f.y
-    }
 }
 
-/// Convolves with a Gaussian of `sigma` nodes, separably, cut at 4σ and normalised.
+/// Convolves with a Gaussian of `sigma` points, separably, cut at 4σ and normalised.
 #[multiversion(targets("x86_64+avx2", "x86_64+avx"))]
 fn gaussian_blur(input: &[f32], width: usize, height: usize, sigma: f64) -> Vec<f32> {
     let radius = (4.0 * sigma).ceil() as usize;

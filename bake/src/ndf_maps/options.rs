@@ -2,16 +2,16 @@
 
 use crate::error::{BakeError, Result};
 use crate::normal_map::NormalMap;
-use glint_formats::ndf_maps::{DensityStorage, MAX_EDGE, MAX_PALETTE};
+use glint_formats::ndf_maps::{MAX_EDGE, MAX_PALETTE};
 
 /// Texels of an example at most; larger maps belong to other methods, or are cropped.
 pub const MAX_EXAMPLE_TEXELS: u64 = 128 * 128;
 /// Smallest and largest intrinsic roughness σ_r.
 pub const ROUGHNESS_RANGE: (f64, f64) = (1e-4, 1.0);
-/// Error of one tile at most, relative to what is asked of the mean.
+/// Error of one node at most, relative to what is asked of the mean.
 pub const WORST_OF_MEAN: f64 = 3.0;
-/// Edge of the finest tiles, in example texels.
-pub const FINEST_TILE: u32 = 2;
+/// Standard deviations that the finest windows may have, in example texels.
+pub const FINEST_WINDOW_RANGE: (f64, f64) = (0.25, 8192.0);
 
 /// Options of a material's bake: its maps and how they cover the surface.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,18 +27,16 @@ pub struct Options {
 pub struct NdfMapsOptions {
     /// Intrinsic roughness σ_r, a standard deviation in the projected-normal disk.
     pub roughness: f64,
-    /// Mean E₁ over tiles; no tile has more than [`WORST_OF_MEAN`] times that (ignored by the paper's storage).
+    /// Mean E₁ of nodes against what they stand for; no node has more than [`WORST_OF_MEAN`] times that.
     pub max_error: f64,
-    /// How densities are stored.
-    pub storage: DensityStorage,
-    /// Finer tiles than this, in texels, are left out, but for the one tile that covers the example. Footprints that are
-    /// too small for the tiles that are left see lobes, which are many under more than two texels.
-    pub min_tile: u32,
+    /// Standard deviation of the finest windows in texels, [`FINEST_WINDOW_RANGE`]. Narrower footprints see the
+    /// patches of the example itself, which cost more the more there are under them.
+    pub finest_window: f64,
 }
 
 impl Default for NdfMapsOptions {
     fn default() -> NdfMapsOptions {
-        NdfMapsOptions { roughness: 0.02, max_error: 0.01, storage: DensityStorage::SqrtU8, min_tile: FINEST_TILE }
+        NdfMapsOptions { roughness: 0.02, max_error: 0.03, finest_window: std::f64::consts::FRAC_1_SQRT_2 }
     }
 }
 
@@ -55,10 +53,11 @@ impl NdfMapsOptions {
         if self.max_error.is_nan() || self.max_error <= 0.0 {
             return Err(BakeError::BadOption(format!("expected a maximum error above 0, found {}", self.max_error)));
         }
-        if !self.min_tile.is_power_of_two() || self.min_tile < FINEST_TILE {
+        let (low, high) = FINEST_WINDOW_RANGE;
+        if !(low..=high).contains(&self.finest_window) {
             return Err(BakeError::BadOption(format!(
-                "expected a smallest tile of a power of two from {FINEST_TILE} on, found {}",
-                self.min_tile
+                "expected a finest window of {low} to {high} texels, found {}",
+                self.finest_window
             )));
         }
         check_size(map)

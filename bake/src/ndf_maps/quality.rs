@@ -1,8 +1,8 @@
-//! Error of packed NDF maps against the f64 reference: tile by tile, and footprint by footprint on a covered surface.
+//! Error of packed NDF maps against the f64 reference: node by node, and footprint by footprint on a covered surface.
 
 use super::bake;
-use super::baked::{BakedNdfMaps, Material};
-use super::eval::{EvalSettings, Terms, TileTerm, matrix};
+use super::baked::BakedNdfMaps;
+use super::eval::EvalSettings;
 use super::reference::ReferenceNdf;
 use super::reference_surface::SurfaceReference;
 use crate::footprint::Footprint;
@@ -51,18 +51,19 @@ impl ExactNdf {
     }
 }
 
-/// Error of every tile's decoded NDF against the integral over its texels, in the order of the tile records. `select`
-/// says which tiles to measure; the exact integral of a steep map at a small roughness takes seconds a tile.
-pub fn tile_errors(map: &NormalMap, baked: &BakedNdfMaps, select: impl Fn(usize) -> bool + Sync) -> Vec<NdfError> {
+/// Error of every node's decoded NDF against the integral under its window, in the order of the node records. `select`
+/// says which nodes to measure; the exact integral of a steep map at a small roughness takes seconds a node.
+pub fn node_errors(map: &NormalMap, baked: &BakedNdfMaps, select: impl Fn(usize) -> bool + Sync) -> Vec<NdfError> {
     let roughness = baked.params.intrinsic_roughness as f64;
-    let rects: Vec<_> = baked.params.levels.iter().flat_map(|level| bake::tile_rects(map, level)).collect();
-    rects
+    let map = &bake::repeating(map);
+    let windows = bake::windows(map, &baked.params.levels, f64::from(baked.params.finest_variance));
+    windows
         .par_iter()
         .enumerate()
-        .filter(|(tile, _)| select(*tile))
-        .map(|(tile, rect)| {
-            let exact = ReferenceNdf::of_rect(map, *rect, roughness);
-            NdfError::of(&exact, |s| baked.tile_density(tile as u32, s))
+        .filter(|(node, _)| select(*node))
+        .map(|(node, window)| {
+            let exact = ReferenceNdf::of_window(map, window, roughness);
+            NdfError::of(&exact, |s| baked.node_density(node as u32, s))
         })
         .collect()
 }
@@ -74,10 +75,8 @@ pub struct FootprintErrors {
     pub e1: Summary,
     /// |∫D̂ − 1| over the footprints.
     pub energy: Summary,
-    /// Tiles and lobes a footprint, on average.
+    /// Nodes and lobes a footprint, on average.
     pub terms: f64,
-    /// Density texels that one query reads, on average (nine a tile whose box holds the query).
-    pub texels: f64,
 }
 
 /// Error over `footprints` of the material that `reference` is of.
@@ -87,13 +86,13 @@ pub fn footprint_errors(
     settings: EvalSettings,
 ) -> FootprintErrors {
     let material = reference.material();
-    let measured: Vec<(NdfError, usize, f64)> = footprints
+    let measured: Vec<(NdfError, usize)> = footprints
         .par_iter()
         .map(|footprint| {
             let terms = material.gather(footprint, settings);
             let exact = reference.ndf(footprint);
             let error = NdfError::of(&exact, |s| material.density(&terms, s));
-            (error, terms.len(), texels_read(material, &terms, &exact))
+            (error, terms.len())
         })
         .collect();
     let count = measured.len().max(1) as f64;
@@ -101,25 +100,5 @@ pub fn footprint_errors(
         e1: Summary::of(measured.iter().map(|m| m.0.e1).collect()),
         energy: Summary::of(measured.iter().map(|m| m.0.energy).collect()),
         terms: measured.iter().map(|m| m.1 as f64).sum::<f64>() / count,
-        texels: measured.iter().map(|m| m.2).sum::<f64>() / count,
     }
-}
-
-/// Mean over queries spread evenly where the NDF lies: nine texels for every tile whose box holds the query.
-fn texels_read(material: &Material, terms: &Terms, exact: &ReferenceNdf) -> f64 {
-    let grid = exact.grid(0.5);
-    let mut read = 0usize;
-    for j in 0..grid.height {
-        for i in 0..grid.width {
-            let s = grid.point(i, j).as_vec2();
-            read += 9 * terms.tiles.iter().filter(|term| reads(material, term, s)).count();
-        }
-    }
-    read as f64 / (grid.width * grid.height) as f64
-}
-
-/// Whether the query `s` lies in the box of a term's tile, so that texels are read for it.
-fn reads(material: &Material, term: &TileTerm, s: Vec2) -> bool {
-    let to_local = matrix(material.placement.palette[term.class as usize].normal_to_local);
-    material.maps.tiles[term.tile as usize].holds(to_local * s)
 }

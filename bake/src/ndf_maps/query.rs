@@ -1,18 +1,15 @@
 //! What a footprint reads on a surface covered with examples, side by side or at random.
 //!
-//! Xing et al. 2024, section 6.3. Places far from the origin keep their digits: a position is brought within the example, or
-//! within its cell, before it is rounded.
+//! Xing et al. 2024, section 6.3. Places far from the origin keep their digits: a position is brought within the example, or within
+//! its cell, before it is rounded.
 
 use super::baked::Material;
 use super::ellipse::{Ellipse, ellipse};
-use super::eval::{EvalSettings, Gathered, Terms, TileTerm, matrix};
-use super::view::{Detail, View};
+use super::eval::{EvalSettings, Terms, bilinear, matrix, normal_cdf};
+use super::view::{Blend, next_probe, patches_share, probes};
 use crate::footprint::Footprint;
 use glam::{DVec2, Mat2, Vec2};
 use glint_formats::ndf_maps::PlacementKind;
-
-/// From this minor axis on (in example edges) shares of tiled examples are even to 1.4 % and the top tile is enough.
-const TOP_TILE_SIGMA: f32 = 0.5;
 
 impl Material {
     /// The point of a tiled example that lies at a surface position, within the example.
@@ -23,53 +20,67 @@ impl Material {
     }
 
     /// Adds what a footprint sees of a surface tiled with one example.
-    fn tiled(&self, footprint: &Footprint, settings: EvalSettings, gathered: &mut Gathered) {
+    fn tiled(&self, footprint: &Footprint, settings: EvalSettings, terms: &mut Terms) {
         let position = self.position_to_local(0);
         let within = self.tiled_place(position, footprint.mean);
-        let transformed = ellipse(footprint, settings.reach).transformed(position, Vec2::ZERO);
-        let ellipse = Ellipse { mean: within, ..transformed };
-        let detail = self.detail(&ellipse, settings);
-        let wide = ellipse.minor >= TOP_TILE_SIGMA * self.size().max_element();
-        if wide || matches!(detail, Detail::Tiles(level) if self.is_top(level)) {
-            return gathered.add(TileTerm { tile: self.top_tile(), class: 0, weight: 1.0 });
+        let seen = ellipse(footprint).transformed(position, Vec2::ZERO).shortened(settings.max_ratio);
+        let seen = Ellipse { mean: within, ..seen };
+        let in_patches = patches_share(seen.minor, self.maps.params.finest_variance);
+        if in_patches < 1.0 {
+            let probes = probes(&seen);
+            let blend = self.blend(probes.variance);
+            // Probes go over to the coarser level one after another.
+            let mut coarser = blend.coarser * probes.total;
+            let mut k = 0.0;
+            loop {
+                let weight = probes.weight(k);
+                if weight <= 0.0 {
+                    break;
+                }
+                let place = within + seen.axis * (k * probes.step);
+                let blend = Blend { level: blend.level, coarser: (coarser / weight).clamp(0.0, 1.0) };
+                self.windows(0, place, blend, weight / probes.total * (1.0 - in_patches), terms);
+                coarser -= weight;
+                k = next_probe(k);
+            }
         }
-        // A sub-region without end.
-        let view = View {
-            ellipse,
-            middle: within,
-            to_surface: Mat2::IDENTITY,
-            scale: 1.0,
-            half: 1e20,
-            extent: Vec2::ONE,
-            class: 0,
-        };
-        match detail {
-            Detail::Tiles(level) => self.tiles(&view, settings, level, gathered),
-            Detail::Boxes(edge) => self.boxes(&view, edge, gathered),
-        }
-        // None has a share: the place alone.
-        if gathered.share <= 0.0 {
-            self.point(0, within, gathered);
+        if in_patches > 0.0 {
+            self.patches(0, &seen, settings, in_patches, terms);
         }
     }
 
     /// The terms of a footprint (surface texels). Shares sum to 1; a footprint of zero size is a point.
     pub fn gather(&self, footprint: &Footprint, settings: EvalSettings) -> Terms {
-        let mut gathered = Gathered::default();
+        let mut terms = Terms::default();
         match self.placement.params.kind {
-            PlacementKind::Tiled => self.tiled(footprint, settings, &mut gathered),
+            PlacementKind::Tiled => self.tiled(footprint, settings, &mut terms),
             PlacementKind::Stochastic { cells_x, cell_texels, .. } => {
-                self.stochastic(footprint, (cells_x, cell_texels), settings, &mut gathered);
+                self.stochastic(footprint, (cells_x, cell_texels), settings, &mut terms);
             }
         }
-        let Gathered { mut terms, share } = gathered;
-        for term in &mut terms.tiles {
-            let to_local = matrix(self.placement.palette[term.class as usize].normal_to_local);
-            term.weight *= to_local.determinant().abs() / share;
-        }
-        for lobe in &mut terms.lobes {
-            lobe.peak /= share;
-        }
+        let jacobian = |class: u32| matrix(self.placement.palette[class as usize].normal_to_local).determinant().abs();
+        terms.nodes.iter_mut().for_each(|term| term.weight *= jacobian(term.class));
+        terms.patches.iter_mut().for_each(|term| term.weight *= jacobian(term.class));
         terms
+    }
+
+    /// Bilinear projected normal at an example point; the example repeats.
+    pub fn normal(&self, local: Vec2) -> Vec2 {
+        let at = (local + 0.5).floor();
+        let f = local + 0.5 - at;
+        bilinear(self.maps.patch(at.as_ivec2()), f)
+    }
+
+    /// Density at the surface's projected normal `s` of the normal at the example point `local`, with its intrinsic lobe, seen through a
+    /// palette entry.
+    pub fn point(&self, class: u32, local: Vec2, s: Vec2) -> f32 {
+        let to_local = matrix(self.placement.palette[class as usize].normal_to_local);
+        let normal = self.normal(local);
+        let d = to_local * s - normal;
+        let sigma = self.maps.params.intrinsic_roughness;
+        let mass = normal_cdf((1.0 - normal.length()) / sigma).max(1e-3);
+        let density =
+            (-0.5 * d.length_squared() / (sigma * sigma)).exp() / (std::f32::consts::TAU * sigma * sigma * mass);
+        to_local.determinant().abs() * density
     }
 }

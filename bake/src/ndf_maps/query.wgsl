@@ -1,10 +1,8 @@
 // What a footprint sees of a surface covered with examples, side by side or at random: the density of its normals. Xing et al. 2024,
 // section 6.3; twin of query.rs, whose numbers of 64 bits are products of halves here. See eval.wgsl for the accessors.
 
-#import ndf_maps::regions
+#import ndf_maps::owners
 
-// From this minor axis on (in example edges) the top tile is enough for tiled examples.
-const GLINT_NDF_TOP_TILE_SIGMA: f32 = 0.5;
 // Rows of the reach mask, one record each of 128 bits.
 const GLINT_NDF_REACH_ROWS: u32 = 128u;
 
@@ -32,6 +30,7 @@ fn glint_ndf_tiled_place(material: GlintNdfMaterial, position: vec4f, place: vec
     return local - floor(local / size) * size;
 }
 
+// What a footprint sees of a surface tiled with one example.
 fn glint_ndf_tiled(
     material: GlintNdfMaterial,
     footprint: GlintFootprint,
@@ -40,39 +39,41 @@ fn glint_ndf_tiled(
 ) -> GlintNdfSum {
     let position = bitcast<vec4f>(glint_ndf_record(material.layer, material.palette_records));
     let normal = bitcast<vec4f>(glint_ndf_record(material.layer, material.palette_records + 1u));
-    let size = vec2f(material.size);
     let within = glint_ndf_tiled_place(material, position, footprint.mean);
-    let ellipse = glint_ndf_transformed(glint_ndf_ellipse(footprint, settings.reach), position, within);
-    let jacobian = abs(glint_ndf_determinant(normal));
+    let transformed = glint_ndf_transformed(glint_ndf_ellipse(footprint), position, within);
+    let seen = glint_ndf_shortened(transformed, settings.max_ratio);
     let local_s = glint_ndf_apply(normal, s);
-    let detail = glint_ndf_detail(material, ellipse, settings);
-    let wide = ellipse.minor >= GLINT_NDF_TOP_TILE_SIGMA * max(size.x, size.y);
-    if wide || detail.level == i32(material.levels) - 1 {
-        return GlintNdfSum(jacobian * glint_ndf_tile_density(material, glint_ndf_top_tile(material), local_s), 1.0, 1.0);
-    }
-    // A sub-region without end.
-    let view =
-        GlintNdfView(ellipse, within, vec4f(1.0, 0.0, 0.0, 1.0), 1.0, 1.0e20, vec2f(1.0), jacobian);
-    var sum = GlintNdfSum(0.0, 0.0, 0.0);
-    if detail.level >= 0 {
-        sum = glint_ndf_tiles(material, view, settings, local_s, u32(detail.level));
-    }
-    if !(sum.share > 0.0) {
-        var at_point = detail.level >= 0;
-        for (var k = 0; k < 2; k++) {
-            sum = glint_ndf_boxes(material, view, local_s, detail.edge, at_point);
-            // None has a share: the place alone.
-            if sum.share > 0.0 {
+    let in_patches = glint_ndf_patches_share(seen.minor, material.finest_variance);
+    var sum = GlintNdfSum(0.0, 0.0);
+    if in_patches < 1.0 {
+        let probes = glint_ndf_probes(seen);
+        let blend = glint_ndf_blend(material, probes.variance);
+        // Probes go over to the coarser level one after another.
+        var coarser = blend.coarser * probes.total;
+        var k = 0.0;
+        for (var i = 0; i < 2 * GLINT_NDF_MAX_PROBES; i++) {
+            let weight = glint_ndf_weight(probes, k);
+            if weight <= 0.0 {
                 break;
             }
-            at_point = true;
+            let place = within + seen.axis * (k * probes.step);
+            let part = GlintNdfBlend(blend.level, clamp(coarser / weight, 0.0, 1.0));
+            let share = weight / probes.total * (1.0 - in_patches);
+            let shown = glint_ndf_windows(material, place, part, share, local_s);
+            sum = GlintNdfSum(sum.density + shown.density, sum.terms + shown.terms);
+            coarser -= weight;
+            k = glint_ndf_next_probe(k);
         }
     }
-    return sum;
+    if in_patches > 0.0 {
+        let shown = glint_ndf_patches(material, seen, settings, in_patches, local_s);
+        sum = GlintNdfSum(sum.density + shown.density, sum.terms + shown.terms);
+    }
+    return GlintNdfSum(abs(glint_ndf_determinant(normal)) * sum.density, sum.terms);
 }
 
 // The density over the disk of projected normals, at `s`, of what lies under a footprint (surface texels); 0 outside the disk.
-// Also the number of tiles and lobes that it took.
+// Also the number of nodes and patches that it took.
 fn glint_ndf_density(
     material: GlintNdfMaterial,
     footprint: GlintFootprint,
@@ -80,20 +81,17 @@ fn glint_ndf_density(
     s: vec2f,
 ) -> GlintNdfSum {
     if dot(s, s) > 1.0 {
-        return GlintNdfSum(0.0, 1.0, 0.0);
+        return GlintNdfSum(0.0, 0.0);
     }
-    var sum: GlintNdfSum;
     if material.cells == 0u {
-        sum = glint_ndf_tiled(material, footprint, settings, s);
-    } else {
-        sum = glint_ndf_stochastic(material, footprint, settings, s);
+        return glint_ndf_tiled(material, footprint, settings, s);
     }
-    return GlintNdfSum(sum.density / sum.share, sum.share, sum.terms);
+    return glint_ndf_stochastic(material, footprint, settings, s);
 }
 
 // Whether any footprint sees normals near `s`: a bit a cell of 128 x 128 over [-1, 1]^2, set where a texel other than zero of
-// some tile under some transform of the palette reaches. False means that glint_ndf_density is 0, but for lobes' tails that
-// the tiles' storage rounds to nothing.
+// some node under some transform of the palette reaches. False means that glint_ndf_density is 0, but for lobes' tails that
+// the tables' eight bits round to nothing.
 fn glint_ndf_reaches(material: GlintNdfMaterial, s: vec2f) -> bool {
     let half = 0.5 * f32(GLINT_NDF_REACH_ROWS);
     let cell = vec2u(clamp((s + 1.0) * half, vec2f(0.0), vec2f(2.0 * half - 1.0)));
@@ -101,17 +99,51 @@ fn glint_ndf_reaches(material: GlintNdfMaterial, s: vec2f) -> bool {
     return ((row[cell.x / 32u] >> (cell.x % 32u)) & 1u) == 1u;
 }
 
+// Bilinear projected normal at an example point; the example repeats.
+fn glint_ndf_normal(material: GlintNdfMaterial, local: vec2f) -> vec2f {
+    let at = floor(local + 0.5);
+    let f = local + 0.5 - at;
+    let size = vec2f(material.size);
+    let texel = glint_ndf_normal_texel(material.layer, vec2u(at - floor((at + 0.5) / size) * size));
+    return glint_ndf_bilinear(
+        unpack2x16snorm(texel.x), unpack2x16snorm(texel.y), unpack2x16snorm(texel.z), unpack2x16snorm(texel.w), f,
+    );
+}
+
+// The normal at the example point `local` with its intrinsic lobe, seen through a palette entry.
+fn glint_ndf_point(material: GlintNdfMaterial, class_index: u32, local: vec2f, surface_s: vec2f) -> f32 {
+    let to_local = bitcast<vec4f>(glint_ndf_record(material.layer, material.palette_records + 2u * class_index + 1u));
+    let normal = glint_ndf_normal(material, local);
+    let d = glint_ndf_apply(to_local, surface_s) - normal;
+    let sigma = material.intrinsic_roughness;
+    let radius = sqrt(dot(normal, normal));
+    let mass = max(glint_ndf_normal_cdf((1.0 - radius) / sigma), 1.0e-3);
+    let density = exp(-0.5 * dot(d, d) / (sigma * sigma)) / (6.2831853 * sigma * sigma * mass);
+    return abs(glint_ndf_determinant(to_local)) * density;
+}
+
 // The density at `s` by its definition, at one point of the surface (texels): the Gaussian of the intrinsic roughness around
-// the micro-normal that shows there. Its mean over points under a footprint is what glint_ndf_density approximates.
+// the micro-normal that shows there, or those of the owners that fade into each other. Its mean over points under a footprint is what
+// glint_ndf_density approximates.
 fn glint_ndf_density_at_point(material: GlintNdfMaterial, place: vec2f, s: vec2f) -> f32 {
     if dot(s, s) > 1.0 {
         return 0.0;
     }
     if material.cells == 0u {
         let position = bitcast<vec4f>(glint_ndf_record(material.layer, material.palette_records));
-        return glint_ndf_point(material, 0u, glint_ndf_tiled_place(material, position, place), s).density;
+        return glint_ndf_point(material, 0u, glint_ndf_tiled_place(material, position, place), s);
     }
     let cells = glint_ndf_cells_around(material, place);
-    let shown = glint_ndf_shown_at(material, cells, cells.mean);
-    return glint_ndf_point(material, shown.class_index, shown.local, s).density;
+    var owners = glint_ndf_owners_at(material, cells, cells.mean, 0.0);
+    var sum = 0.0;
+    for (var o = 0u; o < 4u; o++) {
+        let owner = owners[o];
+        if owner.weight > 0.0 {
+            let at = material.palette_records + 2u * owner.class_index;
+            let position = bitcast<vec4f>(glint_ndf_record(material.layer, at));
+            let local = glint_ndf_apply(position, cells.mean - owner.centre) + owner.offset;
+            sum += owner.weight * glint_ndf_point(material, owner.class_index, local, s);
+        }
+    }
+    return sum;
 }

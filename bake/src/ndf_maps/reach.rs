@@ -1,18 +1,17 @@
 //! Where a material's density may be other than zero, whatever the footprint: the mask of `glint_ndf_reaches`.
 //!
-//! A tile's density at s is a mean of the texels around s, so it is zero but where one of them is not. Texels that 8 bits
-//! would round to zero count as zero. Conservative: a cell is set if any of its points may be reached.
+//! A node's density at s is zero but where one of the four texels around s is not, a patch's but near its normals. Conservative: a cell
+//! is set if any of its points may be reached.
 
 use super::baked::{BakedNdfMaps, Material};
-use super::eval::matrix;
-use glam::{Mat2, Vec2};
-use glint_formats::ndf_maps::{DensityStorage, REACH_CELLS, TileRecord};
-use half::f16;
+use super::eval::{CUT, bilinear, matrix};
+use glam::{Mat2, UVec2, Vec2};
+use glint_formats::ndf_maps::{NodeRecord, REACH_CELLS, STEPS_PER_ROUGHNESS};
 
 /// Cells along an axis in which the example's own reach is found first.
 const LOCAL_CELLS: usize = 512;
-/// A texel of this part of the largest one of its tile is what √ in 8 bits rounds to zero.
-const NOTHING: f32 = (0.5 / 255.0) * (0.5 / 255.0);
+/// Squares along an edge of a patch whose normals are told apart.
+const PARTS: u32 = 4;
 
 /// The mask: a row of cells a record, a bit a cell, from s = (−1, −1) on.
 pub(super) fn mask(material: &Material) -> [[u32; 4]; REACH_CELLS] {
@@ -45,20 +44,34 @@ fn cell(x: f32) -> usize {
 
 impl LocalReach {
     fn new(maps: &BakedNdfMaps) -> LocalReach {
-        // Each texel's reach is a rectangle: +1 and −1 at its corners, summed up along both axes.
+        // Reaches are rectangles: +1 and −1 at their corners, summed up along both axes.
         let side = LOCAL_CELLS + 1;
         let mut marks = vec![0i32; side * side];
-        let reach = if maps.params.storage == DensityStorage::PaperF32 { 1.0 } else { 1.5 };
-        for tile in &maps.tiles {
-            let spacing = Vec2::ONE / Vec2::from(tile.inv_spacing);
-            for [i, j] in texels_over_nothing(maps, tile) {
-                let middle = Vec2::from(tile.origin) + Vec2::new(i as f32, j as f32) * spacing;
-                let (low, high) = (middle - spacing * reach, middle + spacing * reach);
-                let ([x0, y0], [x1, y1]) = ([cell(low.x), cell(low.y)], [cell(high.x) + 1, cell(high.y) + 1]);
-                marks[y0 * side + x0] += 1;
-                marks[y0 * side + x1] -= 1;
-                marks[y1 * side + x0] -= 1;
-                marks[y1 * side + x1] += 1;
+        let mut mark = |low: Vec2, high: Vec2| {
+            let ([x0, y0], [x1, y1]) = ([cell(low.x), cell(low.y)], [cell(high.x) + 1, cell(high.y) + 1]);
+            marks[y0 * side + x0] += 1;
+            marks[y0 * side + x1] -= 1;
+            marks[y1 * side + x0] -= 1;
+            marks[y1 * side + x1] += 1;
+        };
+        let step = maps.params.intrinsic_roughness / STEPS_PER_ROUGHNESS;
+        for node in &maps.nodes {
+            let spacing = Vec2::from(node.spacing().map(|v| v as f32)) * step;
+            let first = Vec2::from(node.origin().map(|v| v as f32)) * step - 1.0;
+            for [i, j] in texels_over_nothing(maps, node) {
+                let middle = first + Vec2::new(i as f32, j as f32) * spacing;
+                mark(middle - spacing, middle + spacing);
+            }
+        }
+        let margin = Vec2::splat(CUT * maps.params.intrinsic_roughness);
+        for k in 0..maps.params.width * maps.params.height {
+            let corners = maps.patch(UVec2::new(k % maps.params.width, k / maps.params.width).as_ivec2());
+            for part in 0..PARTS * PARTS {
+                let corner = |dx: u32, dy: u32| {
+                    bilinear(corners, UVec2::new(part % PARTS + dx, part / PARTS + dy).as_vec2() / PARTS as f32)
+                };
+                let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)];
+                mark(a.min(b).min(c.min(d)) - margin, a.max(b).max(c.max(d)) + margin);
             }
         }
         sum_up(&mut marks, side);
@@ -93,23 +106,9 @@ fn sum_up(values: &mut [i32], side: usize) {
     }
 }
 
-/// Column and row of the texels of a tile that are more than nothing.
-fn texels_over_nothing(maps: &BakedNdfMaps, tile: &TileRecord) -> Vec<[u32; 2]> {
-    let bytes = maps.params.storage.texel_bytes() as usize;
-    let count = (tile.width() * tile.height()) as usize;
-    let first = tile.first as usize * bytes;
-    let values: Vec<f32> = maps.density[first..first + count * bytes]
-        .chunks_exact(bytes)
-        .map(|b| match maps.params.storage {
-            DensityStorage::SqrtU8 => f32::from(b[0]),
-            DensityStorage::F16 => f16::from_le_bytes([b[0], b[1]]).to_f32(),
-            DensityStorage::PaperF32 => f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
-        })
-        .collect();
-    let nothing = match maps.params.storage {
-        DensityStorage::SqrtU8 => 0.0,
-        _ => NOTHING * values.iter().copied().fold(0.0, f32::max),
-    };
-    let over = (0..count as u32).filter(|k| values[*k as usize] > nothing);
-    over.map(|k| [k % tile.width(), k / tile.width()]).collect()
+/// Column and row of the texels of a node that are more than nothing.
+fn texels_over_nothing(maps: &BakedNdfMaps, node: &NodeRecord) -> Vec<[u32; 2]> {
+    let ([x, y], [width, height]) = (node.place(), node.size());
+    let over = (0..width * height).map(|k| [k % width, k / width]);
+    over.filter(|[i, j]| maps.atlas[((y + j) * maps.atlas_size[0] + x + i) as usize] > 0).collect()
 }

@@ -1,11 +1,11 @@
 //! The NDF by its definition, in f64: an integral over micro-normals of one lobe each. Slow, and shares nothing with
 //! the bake but the normal map.
 //!
-//! D(s) = ∫ w(u) K(s; n(u)) du, with n(u) the bilinear normal, w the footprint (or a tile's box), and K the Gaussian of
+//! D(s) = ∫ w(u) K(s; n(u)) du, with n(u) the bilinear normal, w the footprint (or a node's window), and K the Gaussian of
 //! standard deviation σ_r around n, divided by its mass inside the unit disk (Xing et al. 2024, Eq. 1 and 2, with the
 //! continuous map in place of one lobe a texel).
 
-use super::micro_normals::TexelRect;
+use super::windows::Window;
 use crate::normal_map::NormalMap;
 use crate::quality::metrics::DiskGrid;
 use glam::{DMat2, DVec2};
@@ -58,9 +58,9 @@ impl ReferenceNdf {
         ReferenceNdf { kernels, micro_normals }
     }
 
-    /// NDF of a rectangle of the example, every point alike: Gauss–Legendre on pieces of half a texel at most, small
+    /// NDF under a window of the example, which repeats as a whole: Gauss–Legendre on pieces of half a texel at most, small
     /// enough that the normal moves by no more than 2.5 σ_r across one (four points there leave 1e-5).
-    pub fn of_rect(map: &NormalMap, rect: TexelRect, roughness: f64) -> ReferenceNdf {
+    pub fn of_window(map: &NormalMap, window: &Window, roughness: f64) -> ReferenceNdf {
         // Nodes and weights of the 4-point rule on [0, 1].
         const NODES: [(f64, f64); 4] = [
             (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
@@ -69,15 +69,24 @@ impl ReferenceNdf {
             (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
         ];
         let mass = DiskMass::new(roughness);
+        let size = DVec2::new(f64::from(map.width), f64::from(map.height));
+        let halves = |axis: usize| {
+            if window.reach[axis].is_infinite() {
+                return 0..(2.0 * size[axis]) as i64;
+            }
+            let (low, high) = (window.centre[axis] - window.reach[axis], window.centre[axis] + window.reach[axis]);
+            (2.0 * low).floor() as i64..(2.0 * high).ceil() as i64
+        };
         let mut micro_normals = Vec::new();
-        let area = rect.area() as f64;
-        for y in 2 * rect.min[1]..2 * rect.max[1] {
-            for x in 2 * rect.min[0]..2 * rect.max[0] {
+        let mut total = 0.0;
+        for y in halves(1) {
+            for x in halves(0) {
                 let low = DVec2::new(x as f64, y as f64) * 0.5;
-                let (_, jacobian) = map.bilinear(low + 0.25);
+                let within = low - (low / size).floor() * size;
+                let (_, jacobian) = map.bilinear(within + 0.25);
                 let corners = [(0.01, 0.01), (0.49, 0.01), (0.01, 0.49), (0.49, 0.49)];
                 let slope = |axis: usize| {
-                    let at = |c: (f64, f64)| map.bilinear(low + DVec2::new(c.0, c.1)).1.col(axis).length();
+                    let at = |c: (f64, f64)| map.bilinear(within + DVec2::new(c.0, c.1)).1.col(axis).length();
                     corners.into_iter().map(at).fold(jacobian.col(axis).length(), f64::max)
                 };
                 let pieces = |axis: usize| (0.5 * slope(axis) / (2.5 * roughness)).ceil().clamp(1.0, 400.0) as u32;
@@ -86,20 +95,21 @@ impl ReferenceNdf {
                     for i in 0..nu {
                         for (fy, wy) in NODES {
                             for (fx, wx) in NODES {
-                                let f = DVec2::new((i as f64 + fx) / nu as f64, (j as f64 + fy) / nv as f64);
-                                let s = map.bilinear(low + 0.5 * f).0;
-                                let weight = 0.25 * wx * wy / (nu as f64 * nv as f64 * area);
-                                micro_normals.push(MicroNormal {
-                                    mean: s,
-                                    weight: weight / mass.inside(s.length()),
-                                    kernel: 0,
-                                });
+                                let f = DVec2::new((i as f64 + fx) / nu as f64, (j as f64 + fy) / nv as f64) * 0.5;
+                                let weight = wx * wy / (nu as f64 * nv as f64) * window.weight(low + f - window.centre);
+                                if weight > 0.0 {
+                                    let s = map.bilinear(within + f).0;
+                                    total += weight;
+                                    let weight = weight / mass.inside(s.length());
+                                    micro_normals.push(MicroNormal { mean: s, weight, kernel: 0 });
+                                }
                             }
                         }
                     }
                 }
             }
         }
+        micro_normals.iter_mut().for_each(|normal| normal.weight /= total);
         ReferenceNdf::new(&[DMat2::IDENTITY * (roughness * roughness)], micro_normals)
     }
 

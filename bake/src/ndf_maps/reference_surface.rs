@@ -10,14 +10,17 @@ use super::reference::{DiskMass, MicroNormal, ReferenceNdf};
 use crate::footprint::Footprint;
 use crate::normal_map::NormalMap;
 use glam::{DMat2, DVec2};
+use glint_formats::Wrap;
 use glint_formats::ndf_maps::PlacementKind;
 
+/// Width in which neighbouring sub-regions fade into each other, in edges of one.
+const FADE: f64 = 1.0;
 /// Footprints reach this far, in standard deviations (4e-5 of their mass is farther out).
 const REACH: f64 = 4.5;
 
-/// A surface: the example as it was before the bake, and the placement of a material.
+/// A surface: the example as it was before the bake, repeating, and the placement of a material.
 pub struct SurfaceReference<'a> {
-    map: &'a NormalMap,
+    map: NormalMap,
     material: &'a Material,
     roughness: f64,
     mass: DiskMass,
@@ -36,8 +39,8 @@ struct Owner {
     offset: DVec2,
 }
 
-/// What shows at a point of the surface: palette entry and position in the example, in texels within its bounds.
-type Shown = (usize, DVec2);
+/// What shows at a point of the surface: palette entry, position in the example in texels within its bounds, and its part.
+pub type Shown = (usize, DVec2, f64);
 
 impl<'a> SurfaceReference<'a> {
     /// Reference for `material`, baked from `map`.
@@ -51,6 +54,7 @@ impl<'a> SurfaceReference<'a> {
             }
         }
         let owners = find_owners(map, material);
+        let map = NormalMap { wrap: Wrap::Repeat, ..map.clone() };
         SurfaceReference { map, material, roughness, mass: DiskMass::new(roughness), steepest, owners }
     }
 
@@ -59,22 +63,29 @@ impl<'a> SurfaceReference<'a> {
         self.material
     }
 
-    /// Palette entry and example position that show at the surface point `u`.
-    pub fn shown_at(&self, u: DVec2) -> Shown {
-        let size = example_size(self.map);
+    /// What shows at the surface point `u`: one example where they are tiled; those of the four sub-regions around, whose weights fall
+    /// by smoothstep across the borders between them.
+    pub fn shown_at(&self, u: DVec2) -> Vec<Shown> {
+        let size = example_size(&self.map);
         let within = |x: DVec2| x - (x / size).floor() * size;
-        match self.material.placement.params.kind {
-            PlacementKind::Tiled => (0, within(self.to_local(0) * u)),
-            PlacementKind::Stochastic { cells_x, cells_y, cell_texels, .. } => {
-                let edge = 0.5 * cell_texels as f64;
-                let region = (u / edge).floor();
-                let x = (region.x as i64).rem_euclid(2 * cells_x as i64);
-                let y = (region.y as i64).rem_euclid(2 * cells_y as i64);
-                let owner = &self.owners[(y * 2 * cells_x as i64 + x) as usize];
-                let from_centre = u - (region + 0.5) * edge - owner.centre;
-                (owner.class, within(self.to_local(owner.class) * from_centre + owner.offset))
-            }
-        }
+        let PlacementKind::Stochastic { cells_x, cells_y, cell_texels, .. } = self.material.placement.params.kind
+        else {
+            return vec![(0, within(self.to_local(0) * u), 1.0)];
+        };
+        let edge = 0.5 * cell_texels as f64;
+        let first = (u / edge - 0.5).floor();
+        let of_region = |(dx, dy): (f64, f64)| {
+            let region = first + DVec2::new(dx, dy);
+            let x = (region.x as i64).rem_euclid(2 * cells_x as i64);
+            let y = (region.y as i64).rem_euclid(2 * cells_y as i64);
+            let owner = &self.owners[(y * 2 * cells_x as i64 + x) as usize];
+            let away = u - (region + 0.5) * edge;
+            let part = ((0.5 - away.abs() / edge) / FADE + 0.5).clamp(DVec2::ZERO, DVec2::ONE);
+            let part = part * part * (3.0 - 2.0 * part);
+            let from_centre = away - owner.centre;
+            (owner.class, within(self.to_local(owner.class) * from_centre + owner.offset), part.x * part.y)
+        };
+        [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(of_region).to_vec()
     }
 
     /// The NDF of a footprint.
@@ -91,8 +102,9 @@ impl<'a> SurfaceReference<'a> {
             let pitch = |sigma: f64| (sigma / 4.0).min(fine).max(sigma / 400.0).max(1e-12);
             let mut list = Vec::new();
             self.for_each_point(footprint, axis, [major, minor], [pitch(major), pitch(minor)], |u, weight| {
-                let (class, local) = self.shown_at(u);
-                list.push(self.micro_normal(class, self.map.bilinear(local).0, weight));
+                for (class, local, part) in self.shown_at(u) {
+                    list.push(self.micro_normal(class, self.map.bilinear(local).0, weight * part));
+                }
             });
             list
         } else {
@@ -108,9 +120,10 @@ impl<'a> SurfaceReference<'a> {
         let mut shares = vec![0.0; w * h * self.material.placement.palette.len()];
         let pitch = sigmas.map(|sigma| (1.0 / per_texel).max(sigma / 400.0));
         self.for_each_point(footprint, axis, sigmas, pitch, |u, weight| {
-            let (class, local) = self.shown_at(u);
-            let (i, j) = ((local.x * per_texel) as usize, (local.y * per_texel) as usize);
-            shares[(class * h + j.min(h - 1)) * w + i.min(w - 1)] += weight;
+            for (class, local, part) in self.shown_at(u) {
+                let (i, j) = ((local.x * per_texel) as usize, (local.y * per_texel) as usize);
+                shares[(class * h + j.min(h - 1)) * w + i.min(w - 1)] += weight * part;
+            }
         });
         let mut list = Vec::new();
         for (at, share) in shares.into_iter().enumerate() {

@@ -1,58 +1,36 @@
 //! A material of the tiny-example method as sections of a pack, and back. What shaders bind is made here, byte for byte: records
-//! of the uniform, blocks of density, owners of sub-regions.
+//! of the uniform, nodes, the atlas of their tables, owners of sub-regions.
 
 use super::baked::{BakedNdfMaps, BakedPlacement, Material};
-use super::blocks::{self, BLOCK_BYTES};
 use super::reach;
 use crate::error::{BakeError, Result};
 use crate::pack_access::{bytes, names_with, parameters, records};
 use bytemuck::Pod;
 use glint_formats::binding::TABLE_WIDTH;
 use glint_formats::ndf_maps::{
-    CLASSES, DENSITY, LAYERS, LAYERS_UNIFORM, LayeredMaterial, LayersUniform, MaterialUniform, NOISE, NORMALS,
-    NdfMapsParams, PARAMS, PLACEMENT, PlacementKind, PlacementParams, TILES, TileRecord, TransformRecord, UNIFORM,
-    UNIFORM_BYTES, classes_resource, noise_resource, table,
+    CLASSES, DENSITY, LAYERS, LAYERS_UNIFORM, LayeredMaterial, LayersUniform, MaterialUniform, NODES, NOISE, NORMALS,
+    NdfMapsParams, NodeRecord, PARAMS, PLACEMENT, PlacementKind, PlacementParams, TransformRecord, UNIFORM,
+    UNIFORM_BYTES, atlas_resource, classes_resource, noise_resource, table,
 };
 use glint_formats::{Codec, FourCc, Pack, Resource, Section, vk_format};
-
-/// A table of elements of `bytes` bytes each as a section: whole rows, zeros at the end.
-fn table_section(kind: FourCc, name: &str, format: u32, bytes: usize, mut elements: Vec<u8>) -> Section {
-    let count = elements.len() / bytes;
-    let row = TABLE_WIDTH as usize * bytes;
-    elements.resize(elements.len().next_multiple_of(row).max(row), 0);
-    Section::texture(kind, name, table(format, count as u64), elements)
-}
 
 /// The sections of one material under `name`, all compressed or none as `codec` says.
 pub fn to_sections(name: &str, material: &Material, codec: Codec) -> Vec<Section> {
     let Material { maps, placement } = material;
-    let blocks = blocks::blocks(maps);
-    let mut tiles = maps.tiles.clone();
-    for (tile, first) in tiles.iter_mut().zip(blocks.iter().flat_map(|blocks| &blocks.first)) {
-        tile.first = *first;
-    }
-    let header = MaterialUniform::new(&maps.params, &placement.params, blocks.is_some(), material.most_texels());
+    let header = MaterialUniform::new(&maps.params, &placement.params, maps.atlas_size, material.most_texels());
+    let mut nodes = maps.nodes.clone();
+    nodes.resize(nodes.len().next_multiple_of(TABLE_WIDTH as usize), NodeRecord::default());
+    let node_table = table(vk_format::R32G32B32A32_UINT, maps.params.node_count());
     let mut sections = vec![
         Section::parameters(PARAMS, name, &maps.params),
         Section {
             resource: Resource::Buffer { stride: UNIFORM_BYTES as u32, count: 1 },
-            ..Section::buffer(UNIFORM, name, &uniform_bytes(material, &header, &tiles))
+            ..Section::buffer(UNIFORM, name, &uniform_bytes(material, &header))
         },
+        Section::texture(NODES, name, node_table, bytemuck::cast_slice(&nodes).to_vec()),
+        Section::texture(DENSITY, name, atlas_resource(maps.atlas_size), maps.atlas.clone()),
     ];
-    if header.few_tiles == 0 {
-        // A tile is two elements.
-        let records = bytemuck::cast_slice(&tiles).to_vec();
-        sections.push(table_section(TILES, name, vk_format::R32G32B32A32_UINT, 16, records));
-    }
-    sections.push(match blocks {
-        Some(blocks) => table_section(DENSITY, name, vk_format::R32G32B32A32_UINT, BLOCK_BYTES, blocks.payload),
-        None => {
-            let mut texels = maps.density.clone();
-            texels.resize(texels.len().next_multiple_of(4), 0);
-            table_section(DENSITY, name, vk_format::R32_UINT, 4, texels)
-        }
-    });
-    let normals = bytemuck::cast_slice(&maps.normals).to_vec();
+    let normals = bytemuck::cast_slice(&normal_patches(maps)).to_vec();
     sections.push(Section::texture(NORMALS, name, maps.params.normals_resource(), normals));
     sections.push(Section::parameters(PLACEMENT, name, &placement.params));
     if let PlacementKind::Stochastic { cells_x, .. } = placement.params.kind {
@@ -67,18 +45,27 @@ pub fn to_sections(name: &str, material: &Material, codec: Codec) -> Vec<Section
     sections
 }
 
-/// Section [`UNIFORM`]: the header, then levels, palette, reach mask, and tiles if they are few; the rest is zero.
-fn uniform_bytes(material: &Material, header: &MaterialUniform, tiles: &[TileRecord]) -> Vec<u8> {
+/// Section [`NORMALS`]: the four normals around each patch between texel centres, from the one that ends at the first texel on.
+fn normal_patches(maps: &BakedNdfMaps) -> Vec<[[i16; 2]; 4]> {
+    let (width, height) = (maps.params.width as usize, maps.params.height as usize);
+    let before = |k: usize, edge: usize| if k == 0 { edge - 1 } else { k - 1 };
+    let patch = |k: usize| {
+        let (i, j) = (k % width, k / width);
+        let (left, up) = (before(i, width), before(j, height));
+        [[left, up], [i, up], [left, j], [i, j]].map(|[i, j]| maps.normals[j * width + i])
+    };
+    (0..width * height).map(patch).collect()
+}
+
+/// Section [`UNIFORM`]: the header, then levels, palette and reach mask; the rest is zero.
+fn uniform_bytes(material: &Material, header: &MaterialUniform) -> Vec<u8> {
     let mut bytes = bytemuck::bytes_of(header).to_vec();
     for level in &material.maps.params.levels {
-        let record = [level.tile_texels, level.tiles_x, level.tiles_y, level.first_tile];
+        let record = [level.nodes_x, level.nodes_y, level.first_node, 0];
         bytes.extend_from_slice(bytemuck::cast_slice(&record));
     }
     bytes.extend_from_slice(bytemuck::cast_slice(&material.placement.palette));
     bytes.extend_from_slice(bytemuck::cast_slice(&reach::mask(material)));
-    if header.few_tiles == 1 {
-        bytes.extend_from_slice(bytemuck::cast_slice(tiles));
-    }
     bytes.resize(UNIFORM_BYTES, 0);
     bytes
 }
@@ -122,29 +109,25 @@ pub fn from_pack(pack: &Pack, name: &str) -> Result<Material> {
     let header: MaterialUniform = bytemuck::pod_read_unaligned(header);
     let palette: Vec<TransformRecord> =
         read(from_uniform, header.palette_records, placement_params.palette_len as usize).ok_or(short(UNIFORM))?;
-    let count = maps_params.tile_count() as usize;
-    let mut tiles: Vec<TileRecord> = if header.few_tiles == 1 {
-        read(from_uniform, header.tile_records, count).ok_or(short(UNIFORM))?
-    } else {
-        read(&bytes(pack, TILES, name)?, 0, count).ok_or(short(TILES))?
-    };
-    let density = if header.blocks == 1 {
-        blocks::texels_of(&records(pack, DENSITY, name)?, &mut tiles).ok_or(short(DENSITY))?
-    } else {
-        let end = |tile: &TileRecord| tile.first as usize + (tile.width() * tile.height()) as usize;
-        let texels = tiles.iter().map(end).max().unwrap_or(0);
-        let mut words = bytes(pack, DENSITY, name)?;
-        if words.len() < texels * maps_params.storage.texel_bytes() as usize {
-            return Err(short(DENSITY));
+    let mut nodes: Vec<NodeRecord> = records(pack, NODES, name)?;
+    if (nodes.len() as u64) < maps_params.node_count() {
+        return Err(short(NODES));
+    }
+    nodes.truncate(maps_params.node_count() as usize);
+    let atlas = bytes(pack, DENSITY, name)?;
+    let atlas_size = match pack.find(DENSITY, name).map(|entry| entry.resource) {
+        Some(Resource::Texture { width, height, .. }) if u64::from(width) * u64::from(height) == atlas.len() as u64 => {
+            [width, height]
         }
-        words.truncate(texels * maps_params.storage.texel_bytes() as usize);
-        words
+        _ => return Err(short(DENSITY)),
     };
+    let patches: Vec<[[i16; 2]; 4]> = records(pack, NORMALS, name)?;
+    let normals = patches.into_iter().map(|[.., own]| own).collect();
     let stochastic = matches!(placement_params.kind, PlacementKind::Stochastic { .. });
     let (noise, classes) =
         if stochastic { (records(pack, NOISE, name)?, bytes(pack, CLASSES, name)?) } else { (Vec::new(), Vec::new()) };
     Ok(Material {
-        maps: BakedNdfMaps { params: maps_params, tiles, density, normals: records(pack, NORMALS, name)? },
+        maps: BakedNdfMaps { params: maps_params, nodes, atlas_size, atlas, normals },
         placement: BakedPlacement { params: placement_params, palette, noise, classes },
     })
 }

@@ -1,196 +1,168 @@
-//! What a part of the surface shows of one placed example under a footprint: which tiles or boxes, with bounded work.
+//! What one placed example shows under a footprint: windows of two levels around probes, and patches of the map below the
+//! finest.
 //!
-//! Xing et al. 2024, section 6.3. Tiles are chosen by the footprint's minor axis; their shares are the Gaussian footprint at the
-//! tile's centre, widened by the tile's own extent, normalised in the end. Below the finest tile the example is divided in boxes,
-//! each seen as one lobe.
+//! A footprint is a row of probes along its major axis, each a round Gaussian; a probe is a sum of the windows of two levels, three
+//! nodes each. All shares are continuous in the footprint: nothing switches.
 
 use super::baked::Material;
-use super::ellipse::{Ellipse, FINEST_TEXELS, Grid, REACH, for_each_cell, next_slot, slot_at};
-use super::eval::{EvalSettings, Gathered, LobeTerm, TileTerm, matrix};
-use glam::{Mat2, Vec2};
+use super::ellipse::Ellipse;
+use super::eval::{EvalSettings, NodeTerm, PatchTerm, Terms, matrix};
+use glam::{Mat2, Vec2, Vec3};
 
-/// Edge of the boxes that are seen as lobes, at most, in example texels: those boxes are the bilinear cells.
-pub(super) const LOBE_TEXELS: f32 = 1.0;
-/// Pieces under a footprint that is widened by their own size, at most, relative to `max_terms`: thin footprints are seen in
-/// pieces wider than they are.
-pub(super) const MOST_OF_TERMS: f32 = 4.0;
-/// A tile that a sub-region cuts is split from this share on, relative to an even share of `max_terms`.
-const SPLIT_FROM: f32 = 2.0;
+/// Patches go over to windows from this part of the finest windows' variance on.
+const PATCHES_UNTIL: f32 = 0.7;
+/// Patches whose middles lie so far, in texels, beyond the reach of a footprint lie in it with a part: half a diagonal.
+const PATCH_MARGIN: f32 = 0.71;
+/// Distance of probes in standard deviations of the minor axis, and of what the major axis has more.
+const PROBE_STEP: [f32; 2] = [2.2, 1.5];
+/// What is taken off the probes' weights, so that those at the ends come in without a jump.
+const PROBE_TAIL: f32 = 0.02;
+/// Where the major axis begins to be seen by more than one probe and where it is by all: what its variance has more, relative to the
+/// minor axis.
+const PROBES_FROM: [f32; 2] = [0.1, 0.3];
 
-/// What is visible of one placed example, and how the footprint lies on it; tiled examples are visible everywhere.
-pub(super) struct View {
-    /// The footprint in example texels.
-    pub(super) ellipse: Ellipse,
-    /// The sub-region's middle in example texels.
-    pub(super) middle: Vec2,
-    /// Example offsets → surface offsets.
-    pub(super) to_surface: Mat2,
-    /// Surface texels an example texel, by area.
-    pub(super) scale: f32,
-    /// Half the sub-region's edge in surface texels.
-    pub(super) half: f32,
-    /// Half the box, in example texels, around a sub-region of half edge 1.
-    pub(super) extent: Vec2,
-    /// Palette entry of the example.
-    pub(super) class: u32,
+/// Round Gaussians along a footprint's major axis that together are about the footprint.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Probes {
+    /// Distance of neighbours in texels.
+    pub step: f32,
+    /// 1 over the square of the distance where they end.
+    inverse_reach2: f32,
+    /// Weight of all but the middle one.
+    side: f32,
+    /// Sum of weights.
+    pub total: f32,
+    /// Variance of each, texels².
+    pub variance: f32,
 }
 
-impl View {
-    /// How much of a piece of `edge` around `x` lies in the sub-region, as if it were a box along the surface's axes.
-    fn visible(&self, x: Vec2, edge: f32) -> f32 {
-        let size = edge * self.scale;
-        let d = (self.to_surface * (x - self.middle)).abs();
-        let inside = ((Vec2::splat(self.half + 0.5 * size) - d) / size).clamp(Vec2::ZERO, Vec2::ONE);
-        inside.x * inside.y
+impl Probes {
+    /// Weight of the one `k` steps away.
+    pub fn weight(&self, k: f32) -> f32 {
+        if k == 0.0 {
+            return 1.0;
+        }
+        let x = k * self.step;
+        let t = (1.0 - x * x * self.inverse_reach2).max(0.0);
+        self.side * (t * t - PROBE_TAIL).max(0.0)
     }
 }
 
-/// Whether pieces of `edge` are few enough.
-fn few(ellipse: &Ellipse, settings: EvalSettings, least: f32, edge: f32) -> bool {
-    edge >= least && ellipse.pieces(edge) <= MOST_OF_TERMS * settings.max_terms as f32
+/// Round Gaussians along a footprint's major axis that together are about the footprint: weights are (1 − x²/R²)² with R² seven times the
+/// variance that the major axis has more, which is that function's variance. What few probes lack of it widens each of them.
+pub(super) fn probes(ellipse: &Ellipse) -> Probes {
+    let minor2 = ellipse.minor * ellipse.minor;
+    let more = (ellipse.major * ellipse.major - minor2).max(0.0);
+    let step = (PROBE_STEP[0] * ellipse.minor).min(PROBE_STEP[1] * more.sqrt());
+    let side = ((more / minor2 - PROBES_FROM[0]) / (PROBES_FROM[1] - PROBES_FROM[0])).clamp(0.0, 1.0);
+    let inverse_reach2 = 1.0 / (7.0 * more).max(1e-30);
+    let mut probes = Probes { step, inverse_reach2, side, total: 1.0, variance: minor2 };
+    let mut second = 0.0;
+    let mut k = 1.0;
+    while probes.weight(k) > 0.0 {
+        let weight = probes.weight(k);
+        probes.total += 2.0 * weight;
+        second += 2.0 * weight * (k * step) * (k * step);
+        k += 1.0;
+    }
+    probes.variance += 0.5 * (more - second / probes.total).max(0.0);
+    probes
 }
 
-/// What a footprint is resolved in.
+/// The probe after the one `k` steps away: from the middle outward, on both sides.
+pub(super) fn next_probe(k: f32) -> f32 {
+    if k > 0.0 { -k } else { 1.0 - k }
+}
+
+/// A level, and the share of the next one.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Detail {
-    /// Tiles of the level of this index.
-    Tiles(usize),
-    /// Boxes of this edge in example texels, each one lobe.
-    Boxes(f32),
+pub(super) struct Blend {
+    pub level: u32,
+    pub coarser: f32,
+}
+
+/// Part of a footprint that patches show, from its minor axis in texels of the example.
+pub(super) fn patches_share(minor: f32, finest_variance: f32) -> f32 {
+    ((1.0 - minor * minor / finest_variance) / (1.0 - PATCHES_UNTIL)).clamp(0.0, 1.0)
 }
 
 impl Material {
-    /// The coarsest tiles or boxes that resolve a footprint in the example.
-    pub(super) fn detail(&self, ellipse: &Ellipse, settings: EvalSettings) -> Detail {
-        // Long thin footprints take coarser pieces rather than more than `max_terms` of them.
-        let area = ellipse.minor.max(FINEST_TEXELS) * ellipse.major;
-        let least = 2.0 * REACH * (area / settings.max_terms as f32).sqrt();
-        let mut chosen = None;
-        let mut finer = LOBE_TEXELS;
-        for (index, level) in self.maps.params.levels.iter().enumerate() {
-            let edge = level.tile_texels as f32;
-            if edge <= settings.tile_sigmas * ellipse.minor || !few(ellipse, settings, least, finer) {
-                chosen = Some(index);
-                finer = edge;
-            }
+    /// The levels whose windows have a variance (texels²) between them.
+    pub(super) fn blend(&self, variance: f32) -> Blend {
+        let top = self.maps.params.levels.len() as u32 - 1;
+        let ratio = variance / self.maps.params.finest_variance;
+        if ratio <= 1.0 {
+            return Blend { level: 0, coarser: 0.0 };
         }
-        if let Some(index) = chosen {
-            return Detail::Tiles(index);
+        // A level has twice the variance of the one before: the exponent of the ratio.
+        let level = (ratio.to_bits() >> 23) - 127;
+        if level >= top {
+            return Blend { level: top, coarser: 0.0 };
         }
-        let mut edge = LOBE_TEXELS;
-        while edge > FINEST_TEXELS
-            && edge > settings.lobe_sigmas * ellipse.minor
-            && few(ellipse, settings, least, 0.5 * edge)
-        {
-            edge *= 0.5;
-        }
-        Detail::Boxes(edge)
+        Blend { level, coarser: ratio * f32::from_bits((127 - level) << 23) - 1.0 }
     }
 
-    /// Adds the tile at column and row `index` of a level, in the example's period that begins at `period`, by how much of it the
-    /// sub-region shows; one that is cut is split in its four children first, as often as `settings.splits` allows.
-    fn visible_tile(
+    /// Adds the three nodes of a level around the example point `place`, `weight` together: the corners of its triangle.
+    fn triangle(&self, class: u32, level: u32, place: Vec2, weight: f32, terms: &mut Terms) {
+        let record = self.maps.params.levels[level as usize];
+        let nodes = Vec2::new(record.nodes_x as f32, record.nodes_y as f32);
+        let mut at = place / self.size() * nodes;
+        // One row alone is not shifted.
+        at.y = if record.nodes_y == 1 { 0.0 } else { at.y };
+        at.x -= 0.5 * at.y;
+        let cell = at.floor();
+        let f = at - cell;
+        let upper = f.x + f.y < 1.0;
+        let corner = if upper { cell } else { cell + 1.0 };
+        let weights =
+            if upper { Vec3::new(1.0 - f.x - f.y, f.x, f.y) } else { Vec3::new(f.x + f.y - 1.0, 1.0 - f.y, 1.0 - f.x) };
+        let corners = [corner, Vec2::new(cell.x + 1.0, cell.y), Vec2::new(cell.x, cell.y + 1.0)];
+        for (corner, share) in corners.into_iter().zip(weights.to_array()) {
+            // Around the example once along y is half as many columns as rows along x.
+            let around = ((corner.y + 0.5) / nodes.y).floor();
+            let column = corner.x + 0.5 * around * nodes.y * if record.nodes_y == 1 { 0.0 } else { 1.0 };
+            let i = column - ((column + 0.5) / nodes.x).floor() * nodes.x;
+            let j = corner.y - around * nodes.y;
+            let node = record.first_node + j as u32 * record.nodes_x + i as u32;
+            terms.nodes.push(NodeTerm { node, class, weight: weight * share });
+        }
+    }
+
+    /// Adds the windows around the example point `place` that stand for a round Gaussian: those of a level and `coarser` of the next.
+    pub(super) fn windows(&self, class: u32, place: Vec2, blend: Blend, weight: f32, terms: &mut Terms) {
+        if blend.coarser < 1.0 {
+            self.triangle(class, blend.level, place, weight * (1.0 - blend.coarser), terms);
+        }
+        if blend.coarser > 0.0 {
+            self.triangle(class, blend.level + 1, place, weight * blend.coarser, terms);
+        }
+    }
+
+    /// Adds the patches of the map under an ellipse, `weight` together.
+    pub(super) fn patches(
         &self,
-        view: &View,
+        class: u32,
+        ellipse: &Ellipse,
         settings: EvalSettings,
-        level: usize,
-        period: Vec2,
-        index: [u32; 2],
-        gathered: &mut Gathered,
+        weight: f32,
+        terms: &mut Terms,
     ) {
-        let record = &self.maps.params.levels[level];
-        if index[0] >= record.tiles_x || index[1] >= record.tiles_y {
-            return;
-        }
-        let low = period + Vec2::new(index[0] as f32, index[1] as f32) * record.tile_texels as f32;
-        let size = (low + record.tile_texels as f32).min(period + self.size()) - low;
-        let centre = low + 0.5 * size;
-        let edge = size.max_element();
-        let visible = view.visible(centre, edge);
-        if visible <= 0.0 {
-            return;
-        }
-        let weight = size.x * size.y * view.ellipse.widened_gaussian(edge, centre) * visible;
-        let split =
-            visible < 1.0 && settings.splits > 0 && level > 0 && weight * settings.max_terms as f32 >= SPLIT_FROM;
-        if !split {
-            let tile = record.first_tile + index[1] * record.tiles_x + index[0];
-            return gathered.add(TileTerm { tile, class: view.class, weight });
-        }
-        let settings = EvalSettings { splits: settings.splits - 1, ..settings };
-        for child in [[0, 0], [1, 0], [0, 1], [1, 1]] {
-            let index = [2 * index[0] + child[0], 2 * index[1] + child[1]];
-            self.visible_tile(view, settings, level - 1, period, index, gathered);
-        }
-    }
-
-    /// Adds the tiles of a level that the widened footprint reaches and the sub-region may show, row by row.
-    pub(super) fn tiles(&self, view: &View, settings: EvalSettings, level: usize, gathered: &mut Gathered) {
-        let record = &self.maps.params.levels[level];
-        let (edge, size) = (record.tile_texels as f32, self.size());
-        let widened = view.ellipse.widened(edge);
-        let shown = view.extent * (view.half + 0.5 * edge * view.scale) - 0.5 * edge;
-        let (low, high) = (view.middle - shown, view.middle + shown);
-        let reach = widened.reach_y();
-        let last = (widened.mean.y + reach).min(high.y);
-        let mut row = slot_at((widened.mean.y - reach).max(low.y), record.tiles_y, size.y, edge);
-        loop {
-            let start = row.period + row.index as f32 * edge;
-            if start > last || start.is_nan() || last.is_nan() {
-                return;
+        // The patch of the texels (i − 1, j − 1) to (i, j) has its middle at (i, j).
+        let within = ellipse.within(settings.reach, PATCH_MARGIN);
+        let half = within.half_height();
+        let mut y = (within.mean.y - half).ceil();
+        while y <= within.mean.y + half {
+            let [first, last] = within.span_x(y);
+            let mut x = first.ceil();
+            while x <= last {
+                let at = Vec2::new(x, y);
+                let footprint = Ellipse { mean: ellipse.mean - (at - 0.5), ..*ellipse };
+                let corners = self.maps.patch(at.as_ivec2());
+                terms.patches.push(PatchTerm { class, corners, footprint, weight });
+                x += 1.0;
             }
-            let y = 0.5 * (start + (start + edge).min(row.period + size.y));
-            if let Some((x0, x1)) = widened.span_x(y) {
-                let last = x1.min(high.x);
-                let mut column = slot_at(x0.max(low.x), record.tiles_x, size.x, edge);
-                while column.period + column.index as f32 * edge <= last {
-                    let period = Vec2::new(column.period, row.period);
-                    self.visible_tile(view, settings, level, period, [column.index, row.index], gathered);
-                    column = next_slot(column, record.tiles_x, size.x);
-                }
-            }
-            row = next_slot(row, record.tiles_y, size.y);
+            y += 1.0;
         }
-    }
-
-    /// Adds boxes of `edge`, each one lobe; those of a whole texel are the bilinear cells.
-    pub(super) fn boxes(&self, view: &View, edge: f32, gathered: &mut Gathered) {
-        // Box in example texels that holds the centres of all boxes that the sub-region may show.
-        let extent = view.extent * (view.half + 0.5 * edge * view.scale);
-        let span = (view.middle - extent, view.middle + extent);
-        let widened = view.ellipse.widened(edge);
-        for_each_cell(&widened, Grid { origin: -0.5, edge }, span, |_, _, centre| {
-            let weight = edge * edge * widened.gaussian(centre) * view.visible(centre, edge);
-            if weight > 0.0 {
-                let gradient = view.ellipse.log_gradient(centre);
-                self.add_lobe(view.class, centre, edge, weight, gradient, gathered);
-            }
-        });
-    }
-
-    /// Adds the example point `local` as one lobe of no extent.
-    pub(super) fn point(&self, class: u32, local: Vec2, gathered: &mut Gathered) {
-        self.add_lobe(class, local, 0.0, 1.0, Vec2::ZERO, gathered);
-    }
-
-    /// Adds the box of `edge` around the example point `centre`, which has `weight` of a footprint whose logarithm has the
-    /// gradient `gradient` there.
-    fn add_lobe(&self, class: u32, centre: Vec2, edge: f32, weight: f32, gradient: Vec2, gathered: &mut Gathered) {
-        let sigma = self.maps.params.intrinsic_roughness;
-        let to_local = matrix(self.placement.palette[class as usize].normal_to_local);
-        let normal = self.maps.normal_and_jacobian(centre);
-        gathered.terms.lobes.push(LobeTerm::new(normal, edge, sigma, to_local, weight, gradient));
-        gathered.share += weight;
-    }
-
-    /// The tile that covers the example.
-    pub(super) fn top_tile(&self) -> u32 {
-        self.maps.params.levels.last().map_or(0, |level| level.first_tile)
-    }
-
-    /// Whether a level is the last, of one tile.
-    pub(super) fn is_top(&self, level: usize) -> bool {
-        level + 1 == self.maps.params.levels.len()
     }
 
     /// Surface offsets → example offsets under a palette entry.

@@ -1,30 +1,31 @@
-//! Checks the contents of NDF map, placement and layer sections: what an evaluator relies on when it indexes tiles, density
+//! Checks the contents of NDF map, placement and layer sections: what an evaluator relies on when it indexes nodes, the atlas
 //! and transforms.
 
 use crate::binding::TABLE_WIDTH;
-use crate::bytes::{f16_at, f32_at};
 use crate::container::Resource;
 use crate::issue::{Issue, IssueCode};
 use crate::ndf_maps::{
-    CLASSES, DENSITY, DensityStorage, LAYERS, LAYERS_UNIFORM, LayeredMaterial, LayersUniform, Level, MAX_EDGE,
-    MAX_PALETTE, MaterialUniform, NOISE, NORMALS, NdfMapsParams, NoiseTexel, PARAMS, PLACEMENT, PlacementKind,
-    PlacementParams, REACH_CELLS, TILES, TileRecord, TransformRecord, UNIFORM, UNIFORM_BYTES, classes_resource,
-    few_tiles, noise_resource, table,
+    CLASSES, DENSITY, LAYERS, LAYERS_UNIFORM, LayeredMaterial, LayersUniform, Level, MAX_EDGE, MAX_LEVELS, MAX_PALETTE,
+    MaterialUniform, NODES, NOISE, NORMALS, NdfMapsParams, NodeRecord, NoiseTexel, PARAMS, PLACEMENT, PlacementKind,
+    PlacementParams, REACH_CELLS, TransformRecord, UNIFORM, UNIFORM_BYTES, atlas_resource, classes_resource,
+    noise_resource, table,
 };
 use crate::sections::{Loaded, Sections};
 use crate::vk_format;
 
 /// Owners are cells of a 3 × 3 neighbourhood.
 const MAX_OWNER: u32 = 8;
-/// Bytes of a record of the uniform, or of an element of the tables of tiles and blocks.
+/// Bytes of a record of the uniform.
 const RECORD: usize = 16;
+/// Nodes that fit in a table.
+const MAX_NODES: u64 = TABLE_WIDTH as u64 * MAX_EDGE as u64;
 
 /// Checks every example's NDF maps and placement, and every layered material.
 pub(crate) fn check(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
     for section in sections.of_kind(PARAMS) {
         check_material(sections, section, issues);
     }
-    sections.report_orphans(&[UNIFORM, TILES, DENSITY, NORMALS, PLACEMENT], PARAMS, issues);
+    sections.report_orphans(&[UNIFORM, NODES, DENSITY, NORMALS, PLACEMENT], PARAMS, issues);
     sections.report_orphans(&[NOISE, CLASSES], PLACEMENT, issues);
     for section in sections.of_kind(LAYERS) {
         let uniform = sections.need(LAYERS_UNIFORM, section, issues);
@@ -37,6 +38,7 @@ pub(crate) fn check(sections: &Sections<'_>, issues: &mut Vec<Issue>) {
 
 fn check_material(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec<Issue>) {
     let uniform = sections.need(UNIFORM, section, issues);
+    let nodes = sections.need(NODES, section, issues);
     let density = sections.need(DENSITY, section, issues);
     let normals = sections.need(NORMALS, section, issues);
     let placement = sections.need(PLACEMENT, section, issues);
@@ -49,74 +51,26 @@ fn check_material(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec
     if let Some(normals) = normals {
         normals.expect(IssueCode::WrongDescriptor, params.normals_resource(), issues);
     }
-    let texels = density.and_then(|density| check_density(density, params.storage, issues));
+    let atlas = density.and_then(|density| Atlas::read(density, issues));
     if let Err(why) = check_levels(&params) {
         issues.push(section.error(IssueCode::NdfLevels, why));
         return;
     }
+    let (count, errors) = (params.node_count(), params.node_errors.len());
+    if errors as u64 != count {
+        let message = format!("expected an error for each of {count} nodes, found {errors}");
+        issues.push(section.error(IssueCode::NdfNodeCount, message));
+    }
+    let nodes = nodes.filter(|nodes| check_node_table(*nodes, count, issues));
+    let Some(atlas) = atlas else { return };
+    if let Some(nodes) = nodes {
+        check_nodes(nodes, count, &atlas, issues);
+    }
     let (Some(uniform), Some(placed)) = (uniform, placed) else { return };
     let expected = Resource::Buffer { stride: UNIFORM_BYTES as u32, count: 1 };
-    if !uniform.expect(IssueCode::WrongDescriptor, expected, issues) {
-        return;
+    if uniform.expect(IssueCode::WrongDescriptor, expected, issues) {
+        check_uniform(uniform, &params, &placed, &atlas, issues);
     }
-    let table = check_tile_table(sections, section, &params, &placed, issues);
-    check_uniform(uniform, &params, &placed, texels.as_ref().map(|texels| texels.in_blocks), issues);
-    let count = params.tile_count() as usize;
-    let tiles = if few_tiles(&params, &placed) {
-        let header = MaterialUniform::new(&params, &placed, false, 0.0);
-        let first = size_of::<MaterialUniform>() + header.tile_records as usize * RECORD;
-        Some((uniform, &uniform.payload[first..first + count * size_of::<TileRecord>()]))
-    } else {
-        table.map(|table| (table, &table.payload[..count * size_of::<TileRecord>()]))
-    };
-    if let Some((section, tiles)) = tiles {
-        check_tiles(section, tiles, texels.as_ref(), issues);
-    }
-}
-
-/// What a density section holds.
-struct Texels {
-    in_blocks: bool,
-    /// Texels, or blocks, that its table has room for.
-    count: u64,
-}
-
-/// A table of blocks or words with densities that are numbers.
-fn check_density(density: Loaded<'_>, storage: DensityStorage, issues: &mut Vec<Issue>) -> Option<Texels> {
-    let bytes = density.payload.len() as u64;
-    let in_blocks = matches!(
-        density.entry.resource,
-        Resource::Texture { vk_format: vk_format::R32G32B32A32_UINT, .. } if storage == DensityStorage::SqrtU8
-    );
-    let (format, element) = if in_blocks { (vk_format::R32G32B32A32_UINT, 16) } else { (vk_format::R32_UINT, 4) };
-    if !density.expect(IssueCode::WrongDescriptor, table(format, bytes / element), issues) {
-        return None;
-    }
-    if let Some(why) = first_bad_density(density.payload, storage) {
-        issues.push(density.error(IssueCode::NdfDensityValue, why));
-    }
-    let count = if in_blocks { bytes / element } else { bytes / u64::from(storage.texel_bytes()) };
-    Some(Texels { in_blocks, count })
-}
-
-/// The table of tiles, which is there where they do not fit among the records.
-fn check_tile_table<'a>(
-    sections: &'a Sections<'_>,
-    section: Loaded<'_>,
-    params: &NdfMapsParams,
-    placed: &PlacementParams,
-    issues: &mut Vec<Issue>,
-) -> Option<Loaded<'a>> {
-    if few_tiles(params, placed) {
-        if let Some(tiles) = sections.get(TILES, &section.entry.name) {
-            let message = format!("expected no table of {} tiles, which fit in {UNIFORM}", params.tile_count());
-            issues.push(tiles.error(IssueCode::NdfTileCount, message));
-        }
-        return None;
-    }
-    let tiles = sections.need(TILES, section, issues)?;
-    let expected = table(vk_format::R32G32B32A32_UINT, 2 * params.tile_count());
-    tiles.expect(IssueCode::NdfTileCount, expected, issues).then_some(tiles)
 }
 
 /// The uniform says what the parameters say, and holds a palette of usable transforms.
@@ -124,25 +78,34 @@ fn check_uniform(
     uniform: Loaded<'_>,
     params: &NdfMapsParams,
     placed: &PlacementParams,
-    in_blocks: Option<bool>,
+    atlas: &Atlas<'_>,
     issues: &mut Vec<Issue>,
 ) {
     let (header, records) = uniform.payload.split_at(size_of::<MaterialUniform>());
-    let found: MaterialUniform = bytemuck::pod_read_unaligned(header);
+    // What the palette says is known only when the palette can be trusted.
+    let most_texels = bytemuck::pod_read_unaligned::<MaterialUniform>(header).most_texels;
+    let expected = MaterialUniform::new(params, placed, atlas.size, most_texels);
     let mut differs = |message: String| issues.push(uniform.error(IssueCode::NdfUniform, message));
-    let expected = MaterialUniform::new(params, placed, in_blocks.unwrap_or(found.blocks == 1), found.most_texels);
-    if found != expected {
+    if header != bytemuck::bytes_of(&expected) {
+        let found: MaterialUniform = bytemuck::pod_read_unaligned(header);
         return differs(format!("expected {expected:?}, found {found:?}"));
     }
     for (i, (level, record)) in params.levels.iter().zip(records.chunks_exact(RECORD)).enumerate() {
-        let expected = [level.tile_texels, level.tiles_x, level.tiles_y, level.first_tile];
+        let expected = [level.nodes_x, level.nodes_y, level.first_node, 0];
         let found: [u32; 4] = bytemuck::pod_read_unaligned(record);
         if found != expected {
             return differs(format!("level {i}: expected {expected:?}, found {found:?}"));
         }
     }
-    let first = found.palette_records as usize * RECORD;
-    let palette = &records[first..found.reach_records as usize * RECORD];
+    let used = (expected.reach_records as usize + REACH_CELLS) * RECORD;
+    if let Some(at) = records[used..].iter().position(|byte| *byte != 0) {
+        let found = records[used + at];
+        return differs(format!(
+            "expected zeros after the records, found {found} at byte {}",
+            header.len() + used + at
+        ));
+    }
+    let palette = &records[expected.palette_records as usize * RECORD..expected.reach_records as usize * RECORD];
     let mut most = 0.0f64;
     for (i, bytes) in palette.chunks_exact(size_of::<TransformRecord>()).enumerate() {
         let transform: TransformRecord = bytemuck::pod_read_unaligned(bytes);
@@ -154,17 +117,8 @@ fn check_uniform(
         most = most.max(determinant(transform.position_to_local).abs().sqrt());
     }
     // A range holds no NaN.
-    if !(-1e-3 * most..=1e-3 * most).contains(&(f64::from(found.most_texels) - most)) {
-        return differs(format!("expected {most} example texels a surface texel, found {}", found.most_texels));
-    }
-    let tiles = if found.few_tiles == 1 { 2 * params.tile_count() as usize } else { 0 };
-    let used = (found.reach_records as usize + REACH_CELLS + tiles) * RECORD;
-    if let Some(at) = records[used..].iter().position(|byte| *byte != 0) {
-        differs(format!(
-            "expected zeros after the records, found {} at byte {}",
-            records[used + at],
-            header.len() + used + at
-        ));
+    if !(-1e-3 * most..=1e-3 * most).contains(&(f64::from(most_texels) - most)) {
+        differs(format!("expected {most} example texels a surface texel, found {most_texels}"));
     }
 }
 
@@ -176,97 +130,168 @@ fn check_parameters(params: &NdfMapsParams) -> Result<(), String> {
         let (width, height) = (params.width, params.height);
         return Err(format!("expected at most {MAX_EDGE} texels along an edge, found {width} × {height}"));
     }
-    if !(params.intrinsic_roughness > 0.0 && params.intrinsic_roughness.is_finite()) {
+    // Of a number that is not normal the inverse, which evaluators use, may be infinite.
+    if !(params.intrinsic_roughness > 0.0 && params.intrinsic_roughness.is_normal()) {
         return Err(format!("expected a positive intrinsic roughness, found {}", params.intrinsic_roughness));
     }
+    if !(params.finest_variance > 0.0 && params.finest_variance.is_finite()) {
+        return Err(format!("expected a positive variance of the finest windows, found {}", params.finest_variance));
+    }
     let measured = &params.measured;
+    let is_error = |error: f64| error >= 0.0 && error.is_finite();
     for error in [f64::from(params.max_error), measured.mean, measured.p95, measured.worst, measured.energy] {
-        if !(error >= 0.0 && error.is_finite()) {
+        if !is_error(error) {
             return Err(format!("expected errors that are finite and not negative, found {error}"));
         }
     }
-    Ok(())
+    match params.node_errors.iter().enumerate().find(|&(_, error)| !is_error(f64::from(*error))) {
+        Some((i, error)) => Err(format!("node {i}: expected an error that is finite and not negative, found {error}")),
+        None => Ok(()),
+    }
 }
 
-/// Levels cover the example and follow each other, and their tiles fit in a table.
+/// Levels follow each other, from fine to coarse, and their nodes fit in a table.
 fn check_levels(params: &NdfMapsParams) -> Result<(), String> {
-    let mut tiles = 0u64;
-    let mut finer = 0;
+    let levels = params.levels.len();
+    if !(1..=MAX_LEVELS).contains(&levels) {
+        return Err(format!("expected 1 to {MAX_LEVELS} levels, found {levels}"));
+    }
+    let mut first_node = 0u64;
+    let mut finer = [u32::MAX; 2];
     for (i, level) in params.levels.iter().enumerate() {
-        check_level(params, level, tiles, finer).map_err(|why| format!("level {i}: {why}"))?;
-        tiles = tiles.saturating_add(u64::from(level.tiles_x) * u64::from(level.tiles_y));
-        finer = level.tile_texels;
+        check_level(level, first_node, finer).map_err(|why| format!("level {i}: {why}"))?;
+        first_node = first_node.saturating_add(level.nodes());
+        finer = [level.nodes_x, level.nodes_y];
     }
-    match params.levels.last() {
-        None => Err(String::from("expected at least one level, found none")),
-        Some(last) if (last.tiles_x, last.tiles_y) != (1, 1) => {
-            Err(format!("expected one tile in the last level, found {} × {}", last.tiles_x, last.tiles_y))
-        }
-        Some(_) if tiles.saturating_mul(2) > u64::from(TABLE_WIDTH) * u64::from(MAX_EDGE) => {
-            Err(format!("expected tiles that fit in a table, found {tiles}"))
-        }
-        Some(_) => Ok(()),
+    if finer != [1, 1] {
+        return Err(format!("expected one node in the last level, found {} × {}", finer[0], finer[1]));
     }
-}
-
-fn check_level(params: &NdfMapsParams, level: &Level, first_tile: u64, finer: u32) -> Result<(), String> {
-    let tile = level.tile_texels;
-    if !tile.is_power_of_two() || tile <= finer {
-        return Err(format!("expected a tile of a power of two above {finer} texels, found {tile}"));
-    }
-    let grid = (params.width.div_ceil(tile), params.height.div_ceil(tile));
-    if (level.tiles_x, level.tiles_y) != grid {
-        let found = (level.tiles_x, level.tiles_y);
-        return Err(format!("expected {} × {} tiles, found {} × {}", grid.0, grid.1, found.0, found.1));
-    }
-    if u64::from(level.first_tile) != first_tile {
-        return Err(format!("expected first tile {first_tile}, found {}", level.first_tile));
+    if first_node > MAX_NODES {
+        return Err(format!("expected at most {MAX_NODES} nodes, as a table holds, found {first_node}"));
     }
     Ok(())
 }
 
-/// Reports the first tile that is wrong in each way; `texels` is `None` when the density is not known.
-fn check_tiles(section: Loaded<'_>, tiles: &[u8], texels: Option<&Texels>, issues: &mut Vec<Issue>) {
+fn check_level(level: &Level, first_node: u64, finer: [u32; 2]) -> Result<(), String> {
+    let grid = [level.nodes_x, level.nodes_y];
+    if grid.contains(&0) {
+        return Err(format!("expected at least one node, found {} × {}", grid[0], grid[1]));
+    }
+    // Every second row is shifted by half a column, so that two go around together.
+    if grid[1] > 1 && grid[1] % 2 == 1 {
+        return Err(format!("expected one row of nodes or an even number, found {}", grid[1]));
+    }
+    if grid[0] > finer[0] || grid[1] > finer[1] {
+        let [x, y] = finer;
+        return Err(format!(
+            "expected at most the {x} × {y} nodes of the finer level, found {} × {}",
+            grid[0], grid[1]
+        ));
+    }
+    if u64::from(level.first_node) != first_node {
+        return Err(format!("expected first node {first_node}, found {}", level.first_node));
+    }
+    Ok(())
+}
+
+/// Whether the table has a record a node and nothing else; reports it when it has not.
+fn check_node_table(nodes: Loaded<'_>, count: u64, issues: &mut Vec<Issue>) -> bool {
+    if !nodes.expect(IssueCode::NdfNodeCount, table(vk_format::R32G32B32A32_UINT, count), issues) {
+        return false;
+    }
+    let used = count as usize * size_of::<NodeRecord>();
+    let rest = nodes.payload[used..].iter().position(|byte| *byte != 0);
+    if let Some(at) = rest {
+        let message =
+            format!("expected zeros after {count} nodes, found {} at byte {}", nodes.payload[used + at], used + at);
+        issues.push(nodes.error(IssueCode::NdfNodeCount, message));
+    }
+    rest.is_none()
+}
+
+/// What a density section holds.
+struct Atlas<'a> {
+    /// Width and height in texels.
+    size: [u32; 2],
+    /// Texels row by row.
+    texels: &'a [u8],
+}
+
+impl<'a> Atlas<'a> {
+    /// Of a section that has the right descriptor; reports another.
+    fn read(density: Loaded<'a>, issues: &mut Vec<Issue>) -> Option<Atlas<'a>> {
+        let size = match density.entry.resource {
+            Resource::Texture { width, height, .. } => [width.min(MAX_EDGE), height.min(MAX_EDGE)],
+            _ => [MAX_EDGE; 2],
+        };
+        let right = density.expect(IssueCode::WrongDescriptor, atlas_resource(size), issues);
+        right.then_some(Atlas { size, texels: density.payload })
+    }
+
+    fn texel(&self, [x, y]: [u32; 2]) -> u8 {
+        self.texels[y as usize * self.size[0] as usize + x as usize]
+    }
+
+    /// Whether the table of a node and the texels around it lie in the atlas.
+    fn holds(&self, node: &NodeRecord) -> bool {
+        let (place, size) = (node.place(), node.size());
+        (0..2).all(|axis| place[axis] >= 1 && place[axis] + size[axis] < self.size[axis])
+    }
+
+    /// The first texel around the table of a node that is not zero; the atlas holds the node.
+    fn not_zero_around(&self, node: &NodeRecord) -> Option<[u32; 2]> {
+        let ([x, y], [width, height]) = (node.place(), node.size());
+        let (left, right, top, bottom) = (x - 1, x + width, y - 1, y + height);
+        let rows = (left..=right).flat_map(|x| [[x, top], [x, bottom]]);
+        let columns = (y..bottom).flat_map(|y| [[left, y], [right, y]]);
+        rows.chain(columns).find(|&at| self.texel(at) != 0)
+    }
+}
+
+/// Reports the first node that is wrong in each way.
+fn check_nodes(section: Loaded<'_>, count: u64, atlas: &Atlas<'_>, issues: &mut Vec<Issue>) {
     let mut outside = None;
     let mut value = None;
-    for (i, bytes) in tiles.chunks_exact(size_of::<TileRecord>()).enumerate() {
-        let tile: TileRecord = bytemuck::pod_read_unaligned(bytes);
-        if value.is_none() && !tile_values_are_right(&tile) {
-            value = Some(format!("tile {i}: expected finite, positive values and at least one texel, found {tile:?}"));
-        }
-        let Some(texels) = texels else { continue };
-        let (width, height) = (u64::from(tile.width()), u64::from(tile.height()));
-        let (pieces, what) =
-            if texels.in_blocks { ((width + 2) * (height + 2), "block") } else { (width * height, "texel") };
-        let end = u64::from(tile.first) + pieces;
-        if outside.is_none() && end > texels.count {
-            outside = Some(format!("tile {i} ends at {what} {end}, the density has {}", texels.count));
+    let mut border = None;
+    let records = section.payload.chunks_exact(size_of::<NodeRecord>()).take(count as usize);
+    for (i, bytes) in records.enumerate() {
+        let node: NodeRecord = bytemuck::pod_read_unaligned(bytes);
+        let ([x, y], [width, height]) = (node.place(), node.size());
+        if !node_values_are_right(&node) {
+            let ([dx, dy], scale) = (node.spacing(), node.scale);
+            value.get_or_insert_with(|| {
+                format!(
+                    "node {i}: expected at least one texel, a spacing of at least one step and a finite, positive scale, found \
+                     {width} × {height} texels, a spacing of {dx} × {dy} steps and scale {scale}"
+                )
+            });
+        } else if !atlas.holds(&node) {
+            outside.get_or_insert_with(|| {
+                let [atlas_width, atlas_height] = atlas.size;
+                format!(
+                    "node {i}: expected its {width} × {height} texels and one more on every side in an atlas of {atlas_width} × \
+                     {atlas_height} texels, found them at ({x}, {y})"
+                )
+            });
+        } else if border.is_none()
+            && let Some(at) = atlas.not_zero_around(&node)
+        {
+            border = Some(format!(
+                "node {i}: expected zeros around its {width} × {height} texels at ({x}, {y}), found {} at ({}, {})",
+                atlas.texel(at),
+                at[0],
+                at[1]
+            ));
         }
     }
-    issues.extend(value.map(|why| section.error(IssueCode::NdfTileValue, why)));
-    issues.extend(outside.map(|why| section.error(IssueCode::NdfTileOutOfDensity, why)));
+    issues.extend(value.map(|why| section.error(IssueCode::NdfNodeValue, why)));
+    issues.extend(outside.map(|why| section.error(IssueCode::NdfNodeOutOfAtlas, why)));
+    issues.extend(border.map(|why| section.error(IssueCode::NdfNodeBorder, why)));
 }
 
-fn tile_values_are_right(tile: &TileRecord) -> bool {
-    let positive = [tile.inv_spacing[0], tile.inv_spacing[1], tile.scale].iter().all(|v| v.is_finite() && *v > 0.0);
-    let finite = tile.origin.iter().all(|v| v.is_finite());
-    positive && finite && tile.error.is_finite() && tile.error >= 0.0 && tile.width() > 0 && tile.height() > 0
-}
-
-/// The first density texel that is negative or not finite; 8 bits cannot be.
-fn first_bad_density(bytes: &[u8], storage: DensityStorage) -> Option<String> {
-    let value = |texel: &[u8]| match storage {
-        DensityStorage::SqrtU8 => 0.0,
-        DensityStorage::F16 => f16_at(texel, 0),
-        DensityStorage::PaperF32 => f32_at(texel, 0),
-    };
-    if storage == DensityStorage::SqrtU8 {
-        return None;
-    }
-    let bad = |v: f32| !(v.is_finite() && v >= 0.0);
-    let (i, found) =
-        bytes.chunks_exact(storage.texel_bytes() as usize).map(value).enumerate().find(|&(_, found)| bad(found))?;
-    Some(format!("texel {i}: expected a finite density that is not negative, found {found}"))
+fn node_values_are_right(node: &NodeRecord) -> bool {
+    let is_whole = !node.size().contains(&0) && !node.spacing().contains(&0);
+    is_whole && node.scale.is_finite() && node.scale > 0.0
 }
 
 /// A placement: indices lie in range before a shader follows them. Returns it if maps can be checked with it.

@@ -1,4 +1,4 @@
-//! Sections of the tiny-example method: multi-scale NDF maps, the example's normals, and where examples lie.
+//! Sections of the tiny-example method: NDF maps prefiltered by windows, the example's normals, and where examples lie.
 //!
 //! One material is one group of sections that share a name. Two parameter sections, [`PARAMS`] and [`PLACEMENT`], say what it is;
 //! the others are what shaders bind, byte for byte: [`BINDINGS`]. Method: Xing et al. 2024, sections 5 and 6; what is stored differs
@@ -9,21 +9,22 @@ pub(crate) mod check;
 use crate::binding::{Binding, TABLE_WIDTH, View};
 use crate::container::{FourCc, KnownKind, Resource, full_mip_count};
 use crate::vk_format;
-use crate::wrap::Wrap;
 use bytemuck::{Pod, Zeroable};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of one example's NDF maps: [`NdfMapsParams`], bincode.
 pub const PARAMS: FourCc = FourCc(*b"NMPP");
 /// Uniform bytes: buffer of one element of [`UNIFORM_BYTES`], a [`MaterialUniform`] and [`RECORDS`] records of four u32. Records are
-/// the levels, the palette, the reach mask, and the tiles where they fit ([`few_tiles`]); the rest is zero.
+/// the levels, the palette and the reach mask; the rest is zero.
 pub const UNIFORM: FourCc = FourCc(*b"NMUB");
-/// Tiles that do not fit among the records: table of R32G32B32A32_UINT, two elements a [`TileRecord`].
-pub const TILES: FourCc = FourCc(*b"NMTI");
-/// Density of all tiles, tile after tile: table of R32G32B32A32_UINT, a block an element, or of R32_UINT, whose words are texels of
-/// [`DensityStorage::texel_bytes`] one after the other.
+/// Nodes of all levels, level after level, row by row: table of R32G32B32A32_UINT, an element a [`NodeRecord`].
+pub const NODES: FourCc = FourCc(*b"NMND");
+/// Atlas of the nodes' tables: texture R8_UNORM, a texel the square root of a density over that of its node's [`NodeRecord::scale`].
+/// Texels that belong to no table are zero, one at least around each.
 pub const DENSITY: FourCc = FourCc(*b"NMDE");
-/// The example's projected normals: texture R32_UINT, width × height texels, n_x in the low and n_y in the high half, snorm16.
+/// The example's projected normals in patches between texel centres: texture R32G32B32A32_UINT, width × height texels. Texel (i, j) has
+/// the normals of the example's texels (i − 1, j − 1), (i, j − 1), (i − 1, j), (i, j), those before the first being the last: n_x in the
+/// low and n_y in the high half of a number, snorm16.
 pub const NORMALS: FourCc = FourCc(*b"NMNO");
 /// Parameters of a placement: [`PlacementParams`], bincode.
 pub const PLACEMENT: FourCc = FourCc(*b"PLPP");
@@ -40,7 +41,7 @@ pub const LAYERS_UNIFORM: FourCc = FourCc(*b"LAUB");
 pub(crate) const KINDS: &[KnownKind] = &[
     KnownKind::first(PARAMS, "NDF map parameters"),
     KnownKind::first(UNIFORM, "NDF map uniform"),
-    KnownKind::first(TILES, "NDF map tiles"),
+    KnownKind::first(NODES, "NDF map nodes"),
     KnownKind::first(DENSITY, "NDF map density"),
     KnownKind::first(NORMALS, "example normals"),
     KnownKind::first(PLACEMENT, "placement parameters"),
@@ -53,8 +54,8 @@ pub(crate) const KINDS: &[KnownKind] = &[
 /// How a material is bound: of a two-layer material the base, of any other the whole.
 pub const BINDINGS: &[Binding] = &[
     Binding::Uniform(UNIFORM),
-    Binding::Texture(TILES, View::Uint2d),
-    Binding::Texture(DENSITY, View::Uint2d),
+    Binding::Texture(NODES, View::Uint2d),
+    Binding::Texture(DENSITY, View::Float2d),
     Binding::Texture(NORMALS, View::Uint2d),
     Binding::Texture(NOISE, View::Uint2d),
     Binding::Texture(CLASSES, View::Float2dArray),
@@ -64,24 +65,26 @@ pub const BINDINGS: &[Binding] = &[
 /// buffer, so that zeros may be shorter.
 pub const COAT_BINDINGS: &[Binding] = &[
     Binding::Storage(UNIFORM),
-    Binding::Texture(TILES, View::Uint2d),
-    Binding::Texture(DENSITY, View::Uint2d),
+    Binding::Texture(NODES, View::Uint2d),
+    Binding::Texture(DENSITY, View::Float2d),
     Binding::Texture(NORMALS, View::Uint2d),
     Binding::Texture(NOISE, View::Uint2d),
     Binding::Texture(CLASSES, View::Float2dArray),
 ];
 
-/// What is bound last: how the layers lie on each other; zeros where there is one.
-pub const LAYERS_BINDINGS: &[Binding] = &[Binding::Storage(LAYERS_UNIFORM)];
+/// What is bound last: how the layers lie on each other, zeros where there is one, and the sampler of both atlases.
+pub const LAYERS_BINDINGS: &[Binding] = &[Binding::Storage(LAYERS_UNIFORM), Binding::ClampSampler];
 
-/// Bytes of section [`UNIFORM`]: the most that every GPU binds as a uniform.
-pub const UNIFORM_BYTES: usize = 65536;
+/// Bytes of section [`UNIFORM`].
+pub const UNIFORM_BYTES: usize = 4160;
 /// Records of four u32 that follow the [`MaterialUniform`].
 pub const RECORDS: usize = (UNIFORM_BYTES - size_of::<MaterialUniform>()) / 16;
 /// Rows of the reach mask, and bits of each: cells of [−1, 1]² of projected normals.
 pub const REACH_CELLS: usize = 128;
-/// Blocks of a material at most, 32 MiB; the density of larger ones is words.
-pub const MAX_BLOCKS: u64 = 1 << 21;
+/// Steps of origins and spacings of the tables in σ_r: a third.
+pub const STEPS_PER_ROUGHNESS: f32 = 3.0;
+/// Levels of a material at most.
+pub const MAX_LEVELS: usize = 64;
 /// Texels along an edge of an example at most, as of any texture.
 pub const MAX_EDGE: u32 = 8192;
 /// Entries of a palette at most: the run time keeps a share of each.
@@ -93,14 +96,16 @@ pub const MAX_PALETTE: u32 = 32;
 pub struct MaterialUniform {
     /// Width and height of the example in texels.
     pub size: [u32; 2],
-    /// What lies beyond the example's edge: 0 repeat, 1 clamp.
-    pub wrap: u32,
-    /// [`DensityStorage`]: 0 `SqrtU8`, 1 `F16`, 2 `PaperF32`.
-    pub storage: u32,
+    /// 0.
+    pub unused: u32,
+    /// Levels; their records come first: nodes_x, nodes_y, first_node, 0.
+    pub levels: u32,
     /// Intrinsic roughness σ_r.
     pub intrinsic_roughness: f32,
-    /// Levels; their records come first: tile_texels, tiles_x, tiles_y, first_tile.
-    pub levels: u32,
+    /// Steps a unit of the disk, [`STEPS_PER_ROUGHNESS`] / σ_r.
+    pub steps: f32,
+    /// Variance of the finest level's windows in texels²; each level has twice that of the one before.
+    pub finest_variance: f32,
     /// Entries of the palette.
     pub palette: u32,
     /// Cells of a stochastic placement along an axis, a power of two; 0 for tiled examples.
@@ -111,59 +116,44 @@ pub struct MaterialUniform {
     pub palette_records: u32,
     /// First record of the reach mask, one a row of [`REACH_CELLS`] bits, the lowest first.
     pub reach_records: u32,
-    /// First record of the tiles, two each: see [`TileRecord`]; 0 where they have a table.
-    pub tile_records: u32,
-    /// 1 where [`DENSITY`] holds blocks, 0 where it holds words.
-    pub blocks: u32,
-    /// 1 where the tiles are among the records, 0 where they have a table.
-    pub few_tiles: u32,
-    /// Example texels a surface texel, by area, under the transform of the palette that has most.
-    pub most_texels: f32,
+    /// 1 / width and 1 / height of the atlas.
+    pub inv_atlas: [f32; 2],
     /// 0; a program of two materials keeps here which of them this is.
     pub layer: u32,
+    /// Example texels a surface texel, by area, under the transform of the palette that has most.
+    pub most_texels: f32,
 }
 
 impl MaterialUniform {
-    /// That of a material whose density is in blocks or not, and whose palette has `most_texels` at most. Counts are not checked.
-    pub fn new(maps: &NdfMapsParams, placement: &PlacementParams, blocks: bool, most_texels: f32) -> MaterialUniform {
+    /// That of a material whose atlas has `atlas` texels, and whose palette has `most_texels` at most. Counts are not checked.
+    pub fn new(
+        maps: &NdfMapsParams,
+        placement: &PlacementParams,
+        atlas: [u32; 2],
+        most_texels: f32,
+    ) -> MaterialUniform {
         let (cells, cell_texels) = match placement.kind {
             PlacementKind::Tiled => (0, 0.0),
             PlacementKind::Stochastic { cells_x, cell_texels, .. } => (cells_x, cell_texels),
         };
         let levels = maps.levels.len() as u32;
-        let reach_records = levels + 2 * placement.palette_len;
-        let few_tiles = few_tiles(maps, placement);
         MaterialUniform {
             size: [maps.width, maps.height],
-            wrap: match maps.wrap {
-                Wrap::Repeat => 0,
-                Wrap::Clamp => 1,
-            },
-            storage: match maps.storage {
-                DensityStorage::SqrtU8 => 0,
-                DensityStorage::F16 => 1,
-                DensityStorage::PaperF32 => 2,
-            },
-            intrinsic_roughness: maps.intrinsic_roughness,
+            unused: 0,
             levels,
+            intrinsic_roughness: maps.intrinsic_roughness,
+            steps: STEPS_PER_ROUGHNESS / maps.intrinsic_roughness,
+            finest_variance: maps.finest_variance,
             palette: placement.palette_len,
             cells,
             cell_texels,
             palette_records: levels,
-            reach_records,
-            tile_records: if few_tiles { reach_records + REACH_CELLS as u32 } else { 0 },
-            blocks: u32::from(blocks),
-            few_tiles: u32::from(few_tiles),
-            most_texels,
+            reach_records: levels + 2 * placement.palette_len,
+            inv_atlas: atlas.map(|edge| 1.0 / edge as f32),
             layer: 0,
+            most_texels,
         }
     }
-}
-
-/// Whether the tiles of a material fit among the records of its [`UNIFORM`].
-pub fn few_tiles(maps: &NdfMapsParams, placement: &PlacementParams) -> bool {
-    let before = maps.levels.len() as u64 + 2 * u64::from(placement.palette_len) + REACH_CELLS as u64;
-    before + 2 * maps.tile_count() <= RECORDS as u64
 }
 
 /// Descriptor of a table of `elements`.
@@ -191,51 +181,36 @@ impl LayersUniform {
     }
 }
 
-/// How density texels are stored.
+/// One level of the NDF maps: a grid of nodes that repeats with the example. Node (i, j) lies at ((i + j/2) / nodes_x,
+/// j / nodes_y) of the example's width and height, at (i / nodes_x, 0) where there is one row, and holds the NDF under a Gaussian window
+/// around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum DensityStorage {
-    /// 8 bits of √(density / scale), decoded as scale · (q / 255)². One box a tile.
-    SqrtU8,
-    /// Half floats of density / scale. One box a tile.
-    F16,
-    /// The paper's layout: 128 × 128 floats a tile over [−1, 1]², scale 1.
-    PaperF32,
+pub struct Level {
+    /// Columns of nodes.
+    pub nodes_x: u32,
+    /// Rows of nodes: 1, or an even number, as every second one is shifted by half a column.
+    pub nodes_y: u32,
+    /// Index of the level's first node.
+    pub first_node: u32,
 }
 
-impl DensityStorage {
-    /// Bytes of one density texel.
-    pub fn texel_bytes(self) -> u32 {
-        match self {
-            DensityStorage::SqrtU8 => 1,
-            DensityStorage::F16 => 2,
-            DensityStorage::PaperF32 => 4,
-        }
+impl Level {
+    /// Nodes of the level.
+    pub fn nodes(&self) -> u64 {
+        u64::from(self.nodes_x) * u64::from(self.nodes_y)
     }
 }
 
-/// One level of the multi-scale NDF maps: a grid of square tiles that covers the example.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Level {
-    /// Edge of a tile in example texels (a power of two); tiles at the right and lower edge may be cut.
-    pub tile_texels: u32,
-    /// Columns of tiles: ⌈width / tile_texels⌉.
-    pub tiles_x: u32,
-    /// Rows of tiles: ⌈height / tile_texels⌉.
-    pub tiles_y: u32,
-    /// Index of the level's first tile record.
-    pub first_tile: u32,
-}
-
-/// Error of decoded tiles against what they stand for, E₁ = ∫|D̂−D| / ∫D over the unit disk.
+/// Error of decoded nodes against what they stand for, E₁ = ∫|D̂−D| / ∫D over the unit disk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MeasuredError {
-    /// Mean over tiles.
+    /// Mean over the nodes of a level, mean over levels.
     pub mean: f64,
-    /// 95th percentile over tiles.
+    /// 95th percentile over nodes.
     pub p95: f64,
-    /// Worst tile.
+    /// Worst node.
     pub worst: f64,
-    /// Largest |∫D̂ − 1| of a tile.
+    /// Largest |∫D̂ − 1| of a node.
     pub energy: f64,
 }
 
@@ -246,77 +221,74 @@ pub struct NdfMapsParams {
     pub width: u32,
     /// Example height in texels.
     pub height: u32,
-    /// What lies beyond the example's edge.
-    pub wrap: Wrap,
     /// Intrinsic roughness σ_r: standard deviation, in the projected-normal disk, of the lobe each normal carries.
     pub intrinsic_roughness: f32,
-    /// How density texels are stored.
-    pub storage: DensityStorage,
-    /// Levels, finest first; the last has one tile. Tiles begin at 2 texels unless finer ones were left out.
+    /// Variance of the finest level's windows in texels², with what interpolation between nodes adds; each level has twice that of
+    /// the one before.
+    pub finest_variance: f32,
+    /// Levels, finest first; the last has one node, whose window is the whole example.
     pub levels: Vec<Level>,
-    /// E₁ that was asked of tiles on average.
+    /// E₁ that was asked of nodes on average.
     pub max_error: f32,
-    /// Error as the bake measured it.
+    /// Error of nodes as the bake measured it.
     pub measured: MeasuredError,
+    /// E₁ of each node as the bake measured it.
+    pub node_errors: Vec<f32>,
 }
 
 impl NdfMapsParams {
-    /// Tiles of all levels.
-    pub fn tile_count(&self) -> u64 {
-        let count = |level: &Level| u64::from(level.tiles_x) * u64::from(level.tiles_y);
-        self.levels.iter().fold(0, |sum, level| sum.saturating_add(count(level)))
+    /// Nodes of all levels.
+    pub fn node_count(&self) -> u64 {
+        self.levels.iter().fold(0, |sum, level| sum.saturating_add(level.nodes()))
     }
 
     /// Descriptor of [`NORMALS`].
     pub fn normals_resource(&self) -> Resource {
         let (width, height) = (self.width, self.height);
-        Resource::Texture { vk_format: vk_format::R32_UINT, width, height, layers: 1, faces: 1, mips: 1 }
+        Resource::Texture { vk_format: vk_format::R32G32B32A32_UINT, width, height, layers: 1, faces: 1, mips: 1 }
     }
 }
 
-/// One tile: where its box lies in the projected-normal disk and where its texels are.
+/// One node: where its table lies in the disk of projected normals, and where in the atlas.
 ///
-/// The density at s is scale · Σ v(i, j) · B(p_x − i) · B(p_y − j) with p = (s − origin) · inv_spacing. B is the quadratic
-/// B-spline (¾ − t² for |t| ≤ ½, ½ (3/2 − |t|)² for |t| ≤ 3/2, else 0), so nine texels reach a point; for
-/// [`DensityStorage::PaperF32`] it is the tent 1 − |t| of bilinear filtering. Densities below 0 do not occur; texels outside
-/// 0 ≤ i < width, 0 ≤ j < height are zero. In words, texel v(i, j) is texel first + j · width + i. In blocks, the tile has
-/// (width + 2) · (height + 2) of them from `first` on, by rows, and block (i, j) holds the three by three texels from (i − 2, j − 2) on:
-/// a row in each of its first three components, 8 bits a texel, the lowest first.
+/// A step is σ_r / [`STEPS_PER_ROUGHNESS`]. Texel (i, j) of the table stands at s = (origin + (i, j) · spacing) steps − 1. With
+/// p = ((s + 1) / step − origin) / spacing, the root r(p) is bilinear between texels, those outside the table zero, and the density
+/// is scale · r².
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct TileRecord {
-    /// Projected normal at texel (0, 0).
-    pub origin: [f32; 2],
-    /// 1 / distance of neighbouring texels along s_x and s_y.
-    pub inv_spacing: [f32; 2],
-    /// Density that a stored 1.0 stands for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct NodeRecord {
+    /// Steps from s = (−1, −1) to texel (0, 0): x | y << 16.
+    pub origin: u32,
+    /// Texel of the atlas that is texel (0, 0): x | y << 16.
+    pub place: u32,
+    /// width | height << 8 in texels, spacing_x << 16 | spacing_y << 24 in steps.
+    pub shape: u32,
+    /// Density where the root is 1.
     pub scale: f32,
-    /// First texel or block, counted from the start of the density section.
-    pub first: u32,
-    /// width | height << 16, in texels.
-    pub size: u32,
-    /// E₁ of this tile as the bake measured it.
-    pub error: f32,
 }
 
-impl TileRecord {
-    /// Texels in a row.
-    pub fn width(&self) -> u32 {
-        self.size & 0xffff
+impl NodeRecord {
+    /// Steps from s = (−1, −1) to texel (0, 0).
+    pub fn origin(&self) -> [u32; 2] {
+        [self.origin & 0xffff, self.origin >> 16]
     }
-    /// Rows of texels.
-    pub fn height(&self) -> u32 {
-        self.size >> 16
+    /// Texel of the atlas that is texel (0, 0).
+    pub fn place(&self) -> [u32; 2] {
+        [self.place & 0xffff, self.place >> 16]
     }
-    /// Whether the density at `s` may be other than zero: `s` is within the reach of a spline of the tile.
-    pub fn holds(&self, s: impl Into<[f32; 2]>) -> bool {
-        let s = s.into();
-        let inside = |axis: usize, texels: u32| {
-            let p = (s[axis] - self.origin[axis]) * self.inv_spacing[axis];
-            (-1.5..=texels as f32 + 0.5).contains(&p)
-        };
-        inside(0, self.width()) && inside(1, self.height())
+    /// Width and height in texels.
+    pub fn size(&self) -> [u32; 2] {
+        [self.shape & 0xff, self.shape >> 8 & 0xff]
     }
+    /// Distance of texels in steps.
+    pub fn spacing(&self) -> [u32; 2] {
+        [self.shape >> 16 & 0xff, self.shape >> 24]
+    }
+}
+
+/// Descriptor of [`DENSITY`] of an atlas of `size` texels.
+pub fn atlas_resource([width, height]: [u32; 2]) -> Resource {
+    Resource::Texture { vk_format: vk_format::R8_UNORM, width, height, layers: 1, faces: 1, mips: 1 }
 }
 
 /// How a surface is covered with examples.

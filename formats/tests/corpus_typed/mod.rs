@@ -65,7 +65,7 @@ pub fn without(sections: Vec<Section>, kind: glint_formats::FourCc) -> Vec<Secti
 
 fn group_cases() -> Vec<Case> {
     let mut normals = normals_section();
-    normals.payload.truncate(12);
+    normals.payload.truncate(48);
     if let Resource::Texture { height, .. } = &mut normals.resource {
         *height = 1;
     }

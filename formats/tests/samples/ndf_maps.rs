@@ -2,51 +2,57 @@
 
 use super::*;
 use glint_formats::ndf_maps::*;
-use glint_formats::{Resource, Section, Wrap, vk_format};
+use glint_formats::{Resource, Section, vk_format};
 
-/// A map of 3 × 2 texels: two tiles of 2 texels, one of 4.
+/// Texels of the atlas.
+pub const ATLAS: [u32; 2] = [16, 8];
+
+/// A map of 3 × 2 texels: a level of two nodes and one of one.
 pub fn ndf_params() -> NdfMapsParams {
     NdfMapsParams {
         width: 3,
         height: 2,
-        wrap: Wrap::Repeat,
         intrinsic_roughness: 0.01,
-        storage: DensityStorage::F16,
-        levels: vec![
-            Level { tile_texels: 2, tiles_x: 2, tiles_y: 1, first_tile: 0 },
-            Level { tile_texels: 4, tiles_x: 1, tiles_y: 1, first_tile: 2 },
-        ],
+        finest_variance: 0.5,
+        levels: vec![Level { nodes_x: 2, nodes_y: 1, first_node: 0 }, Level { nodes_x: 1, nodes_y: 1, first_node: 2 }],
         max_error: 0.1,
         measured: MeasuredError { mean: 0.01, p95: 0.02, worst: 0.03, energy: 0.001 },
+        node_errors: vec![0.01, 0.02, 0.03],
     }
 }
 
-pub fn tiles() -> Vec<TileRecord> {
-    let tile = TileRecord {
-        origin: [-0.5, -0.5],
-        inv_spacing: [2.0, 2.0],
-        scale: 1.0,
-        first: 0,
-        size: 2 | 2 << 16,
-        error: 0.02,
-    };
-    vec![tile, TileRecord { first: 4, ..tile }, TileRecord { first: 8, ..tile }]
+/// Three nodes of 2 × 2 texels side by side, one more texel between them; texel (0, 0) is that of s = (0, 0).
+pub fn nodes() -> Vec<NodeRecord> {
+    let node = NodeRecord { origin: 300 | 300 << 16, place: 0, shape: 2 | 2 << 8 | 1 << 16 | 3 << 24, scale: 1.0 };
+    [1, 4, 7].map(|x| NodeRecord { place: x | 1 << 16, ..node }).to_vec()
 }
 
-/// A table of half floats, the first twelve of them 1.0.
-pub fn density() -> Vec<u16> {
-    let mut texels = vec![0; 2048];
-    texels[..12].fill(0x3c00);
+pub fn nodes_section(nodes: &[NodeRecord]) -> Section {
+    let resource = table(vk_format::R32G32B32A32_UINT, nodes.len() as u64);
+    let mut payload: Vec<u8> = bytemuck::cast_slice(nodes).to_vec();
+    payload.resize(resource.byte_len().unwrap().unwrap() as usize, 0);
+    Section::texture(NODES, ROCK, resource, payload).compressed()
+}
+
+/// Texels of the atlas: 255 in the tables of the nodes, else 0.
+pub fn density() -> Vec<u8> {
+    let mut texels = vec![0; (ATLAS[0] * ATLAS[1]) as usize];
+    for node in nodes() {
+        let ([x, y], [width, height]) = (node.place(), node.size());
+        for row in y..y + height {
+            let first = (row * ATLAS[0] + x) as usize;
+            texels[first..first + width as usize].fill(255);
+        }
+    }
     texels
 }
 
-pub fn density_section(texels: &[u16]) -> Section {
-    let payload = bytemuck::cast_slice(texels).to_vec();
-    Section::texture(DENSITY, ROCK, table(vk_format::R32_UINT, payload.len() as u64 / 4), payload).compressed()
+pub fn density_section(texels: &[u8]) -> Section {
+    Section::texture(DENSITY, ROCK, atlas_resource(ATLAS), texels.to_vec()).compressed()
 }
 
 pub fn normals_section() -> Section {
-    Section::texture(NORMALS, ROCK, ndf_params().normals_resource(), vec![0; 24])
+    Section::texture(NORMALS, ROCK, ndf_params().normals_resource(), vec![0; 96])
 }
 
 pub fn palette() -> Vec<TransformRecord> {
@@ -58,24 +64,15 @@ pub fn palette() -> Vec<TransformRecord> {
     ]
 }
 
-/// Bytes of the uniform: header, levels, palette, a reach mask of ones, tiles if they are few.
-pub fn uniform(
-    params: &NdfMapsParams,
-    placement: &PlacementParams,
-    palette: &[TransformRecord],
-    tiles: &[TileRecord],
-) -> Vec<u8> {
-    let header = MaterialUniform::new(params, placement, false, 1.0);
-    let mut bytes = bytemuck::bytes_of(&header).to_vec();
+/// Bytes of the uniform: header, levels, palette, a reach mask of ones.
+pub fn uniform(params: &NdfMapsParams, placement: &PlacementParams, palette: &[TransformRecord]) -> Vec<u8> {
+    let mut bytes = bytemuck::bytes_of(&MaterialUniform::new(params, placement, ATLAS, 1.0)).to_vec();
     for level in &params.levels {
-        let record = [level.tile_texels, level.tiles_x, level.tiles_y, level.first_tile];
+        let record = [level.nodes_x, level.nodes_y, level.first_node, 0];
         bytes.extend_from_slice(bytemuck::cast_slice(&record));
     }
     bytes.extend_from_slice(bytemuck::cast_slice(palette));
     bytes.resize(bytes.len() + 16 * REACH_CELLS, 0xff);
-    if header.few_tiles == 1 {
-        bytes.extend_from_slice(bytemuck::cast_slice(tiles));
-    }
     bytes.resize(UNIFORM_BYTES, 0);
     bytes
 }
@@ -90,11 +87,12 @@ pub fn material(
     params: &NdfMapsParams,
     placement: &PlacementParams,
     palette: &[TransformRecord],
-    tiles: &[TileRecord],
+    nodes: &[NodeRecord],
 ) -> Vec<Section> {
     vec![
         Section::parameters(PARAMS, ROCK, params),
-        uniform_section(&uniform(params, placement, palette, tiles)),
+        uniform_section(&uniform(params, placement, palette)),
+        nodes_section(nodes),
         density_section(&density()),
         normals_section(),
         Section::parameters(PLACEMENT, ROCK, placement),
@@ -107,7 +105,7 @@ pub fn tiled() -> PlacementParams {
 
 /// A material that is tiled.
 pub fn good_ndf_maps() -> Vec<Section> {
-    material(&ndf_params(), &tiled(), &palette(), &tiles())
+    material(&ndf_params(), &tiled(), &palette(), &nodes())
 }
 
 pub fn stochastic(cells_x: u32, cells_y: u32) -> PlacementParams {
@@ -136,7 +134,7 @@ pub fn classes_section(palette_len: u32) -> Section {
 
 /// A material of a stochastic placement of 2 × 2 cells.
 pub fn placed(noise: &[NoiseTexel]) -> Vec<Section> {
-    let mut sections = material(&ndf_params(), &stochastic(2, 2), &palette(), &tiles());
+    let mut sections = material(&ndf_params(), &stochastic(2, 2), &palette(), &nodes());
     sections.push(noise_section(noise, 2));
     sections.push(classes_section(2));
     sections

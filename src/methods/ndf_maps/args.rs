@@ -6,9 +6,8 @@ use crate::delivery::Delivery;
 use crate::exit::Failure;
 use clap::ValueEnum;
 use glint_bake_core::ndf_maps::options::{
-    FINEST_TILE, NdfMapsOptions, PlacementOptions, ROUGHNESS_RANGE, StochasticOptions, TransformRanges,
+    FINEST_WINDOW_RANGE, NdfMapsOptions, PlacementOptions, ROUGHNESS_RANGE, StochasticOptions, TransformRanges,
 };
-use glint_formats::ndf_maps::DensityStorage;
 use std::path::PathBuf;
 
 /// Lines that `--help` shows and a test runs.
@@ -37,24 +36,22 @@ pub struct Args {
     /// Intrinsic roughness: standard deviation of each normal's lobe in the projected-normal disk, 0.0001 to 1
     #[arg(long, value_name = "SIGMA", default_value = "0.02", value_parser = values::positive, help_heading = "Bake")]
     pub roughness: f64,
-    /// Values for --max-error and --storage at once; either flag wins over it
+    /// Value for --max-error, which wins over it
     #[arg(long, value_name = "PRESET", default_value = "balanced", help_heading = "Bake")]
     pub preset: Preset,
-    /// Error E1 asked of tiles on average, three times that of each; given, missing it fails the bake
+    /// Error E1 asked of nodes on average, three times that of each; given, missing it fails the bake
     /// [default: by preset]
     ///
     /// When it is given and the bake misses it, nothing is written and the exit code is 6.
     #[arg(long, value_name = "E1", value_parser = values::positive, help_heading = "Bake")]
     pub max_error: Option<f64>,
-    /// How densities are stored; paper is 128 x 128 floats a tile [default: by preset]
-    #[arg(long, value_name = "STORAGE", help_heading = "Bake")]
-    pub storage: Option<Storage>,
-    /// Edge in texels of the smallest tiles that are kept, a power of two; larger where no footprint is smaller
+    /// Standard deviation of the finest windows in texels, 0.25 to 8192; larger where no footprint is narrower
+    /// [default: 0.7071, the root of a half]
     ///
-    /// Where every footprint is as wide as a tile of so many texels, finer ones are never read; narrower ones then
-    /// see lobes, one a texel.
-    #[arg(long, value_name = "TEXELS", default_value = "2", value_parser = tile_edge, help_heading = "Bake")]
-    pub min_tile: u32,
+    /// Narrower footprints see the map's own patches between texels, which cost more than windows. Where every footprint is
+    /// as wide, finer windows are never read and only take bytes.
+    #[arg(long, value_name = "TEXELS", value_parser = finest_window, help_heading = "Bake")]
+    pub finest_window: Option<f64>,
     /// Compress the pack's sections with Zstandard
     #[arg(long, help_heading = "Bake")]
     pub compress: bool,
@@ -103,9 +100,10 @@ pub struct Args {
     pub run: RunFlags,
 }
 
-fn tile_edge(text: &str) -> Result<u32, String> {
-    let number = text.parse::<u32>().ok().filter(|n| n.is_power_of_two() && (2..=16_384).contains(n));
-    number.ok_or_else(|| "expected a power of two from 2 to 16384".into())
+fn finest_window(text: &str) -> Result<f64, String> {
+    let (low, high) = FINEST_WINDOW_RANGE;
+    let number = text.parse::<f64>().ok().filter(|window| (low..=high).contains(window));
+    number.ok_or_else(|| format!("expected a number from {low} to {high}"))
 }
 
 fn power_of_two(text: &str) -> Result<u32, String> {
@@ -116,23 +114,12 @@ fn power_of_two(text: &str) -> Result<u32, String> {
 /// Values for several flags at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Preset {
-    /// --max-error 0.05 --storage u8
+    /// --max-error 0.08
     Draft,
-    /// --max-error 0.01 --storage u8
+    /// --max-error 0.03
     Balanced,
-    /// --max-error 0.003 --storage f16
+    /// --max-error 0.01
     Accurate,
-}
-
-/// How densities are stored.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Storage {
-    /// 8 bits of the square root
-    U8,
-    /// half floats
-    F16,
-    /// the paper's layout
-    Paper,
 }
 
 /// How a surface is covered.
@@ -149,18 +136,13 @@ impl Args {
         Delivery { output: &self.output, inputs: &self.maps, run: &self.run }
     }
 
-    /// Error asked of every tile.
+    /// Error asked of nodes.
     fn wanted_error(&self) -> f64 {
         self.max_error.unwrap_or(match self.preset {
-            Preset::Draft => 0.05,
-            Preset::Balanced => 0.01,
-            Preset::Accurate => 0.003,
+            Preset::Draft => 0.08,
+            Preset::Balanced => 0.03,
+            Preset::Accurate => 0.01,
         })
-    }
-
-    /// How densities are stored.
-    fn wanted_storage(&self) -> Storage {
-        self.storage.unwrap_or(if self.preset == Preset::Accurate { Storage::F16 } else { Storage::U8 })
     }
 
     /// Options of every map's bake.
@@ -175,8 +157,7 @@ impl Args {
         Ok(NdfMapsOptions {
             roughness: self.roughness,
             max_error: self.wanted_error(),
-            storage: self.wanted_storage().into(),
-            min_tile: self.min_tile,
+            finest_window: self.finest_window.unwrap_or(NdfMapsOptions::default().finest_window),
         })
     }
 
@@ -215,7 +196,6 @@ impl Args {
         let mut options = OptionList::default();
         options.push("roughness", self.roughness);
         options.push("max-error", used.max_error);
-        options.push_choice("storage", &Storage::from(used.storage));
         options.extend(self.input.option_list());
         options.push_choice("placement", &self.placement);
         let ranges = match placement {
@@ -228,29 +208,9 @@ impl Args {
             options.push("cells", self.cells);
             options.push("spacing", self.spacing);
         }
-        if self.min_tile != FINEST_TILE {
-            options.push("min-tile", self.min_tile);
+        if let Some(window) = self.finest_window {
+            options.push("finest-window", window);
         }
         options
-    }
-}
-
-impl From<Storage> for DensityStorage {
-    fn from(storage: Storage) -> DensityStorage {
-        match storage {
-            Storage::U8 => DensityStorage::SqrtU8,
-            Storage::F16 => DensityStorage::F16,
-            Storage::Paper => DensityStorage::PaperF32,
-        }
-    }
-}
-
-impl From<DensityStorage> for Storage {
-    fn from(storage: DensityStorage) -> Storage {
-        match storage {
-            DensityStorage::SqrtU8 => Storage::U8,
-            DensityStorage::F16 => Storage::F16,
-            DensityStorage::PaperF32 => Storage::Paper,
-        }
     }
 }

@@ -1,11 +1,9 @@
 //! `glint-bake ndf-maps`: normal maps in, a verified pack out. What a bake will do is checked before any of it is done:
 //! names, options, inputs, output paths.
 
-use super::args::{Args, Storage};
-use super::info::PAPER_TILE_BYTES;
+use super::args::Args;
 use crate::cli::Terminal;
 use crate::cli::normal_maps::{Names, check_name};
-use crate::cli::values::name_of;
 use crate::exit::{Exit, Failure};
 use crate::input::{LoadedMap, load_normal_map};
 use crate::methods::bake::FinishedPack;
@@ -19,11 +17,12 @@ use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::options::{NdfMapsOptions, Options, PlacementOptions, WORST_OF_MEAN, check_size};
 use glint_bake_core::ndf_maps::placement::place;
 use glint_bake_core::ndf_maps::sections;
+use glint_bake_core::ndf_maps::windows::levels;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::{Progress, Silent};
 use glint_formats::Codec;
 use glint_formats::container::MAX_NAME_BYTES;
-use glint_formats::ndf_maps::{DensityStorage, LayeredMaterial};
+use glint_formats::ndf_maps::{LayeredMaterial, Level};
 use glint_formats::provenance::Provenance;
 use std::path::PathBuf;
 
@@ -99,8 +98,7 @@ impl<'a> Job<'a> {
         let mut sources = Vec::new();
         for (path, name) in args.maps.iter().zip(names) {
             let loaded = load_normal_map(path, &input)?;
-            check_material(&loaded.map, &options, &placement, args.run.max_memory)
-                .map_err(|e| Failure::bake(path, &e))?;
+            check_material(&loaded.map, &options, &placement).map_err(|e| Failure::bake(path, &e))?;
             sources.push(Source { path: path.clone(), name, loaded });
         }
         Ok(Job { args, sources, options, placement, layers })
@@ -131,7 +129,7 @@ impl<'a> Job<'a> {
         }
         let message = format!(
             "{}: expected E1 of {asked} on average and {} at the worst, found {:.5} and {:.5}; nothing was written. Raise \
-             --max-error or --roughness, or give --storage f16",
+             --max-error or --roughness",
             source.path.display(),
             WORST_OF_MEAN * asked,
             measured.mean,
@@ -224,18 +222,17 @@ fn dry_run_text(job: &Job) -> String {
     for source in &job.sources {
         let (width, height) = (source.loaded.map.width, source.loaded.map.height);
         lines.push(format!(
-            "would bake {} as \"{}\": {width} × {height} texels, {} tiles",
+            "would bake {} as \"{}\": {width} × {height} texels, {} nodes",
             source.path.display(),
             source.name,
-            tile_count(width, height, job.options.min_tile)
+            levels(width, height, job.options.finest_window).iter().map(Level::nodes).sum::<u64>()
         ));
     }
     let output = job.args.output.display();
     lines.push(format!(
-        "would write {output}: σ_r {}, E₁ {} asked, {} storage; dry run, nothing was written",
+        "would write {output}: σ_r {}, E₁ {} asked; dry run, nothing was written",
         job.options.roughness,
-        percent(job.options.max_error),
-        name_of(&Storage::from(job.options.storage))
+        percent(job.options.max_error)
     ));
     lines.join("\n")
 }
@@ -259,12 +256,7 @@ pub fn bake_material(
 }
 
 /// What would stop [`bake_material`], found without the work.
-fn check_material(
-    map: &NormalMap,
-    options: &NdfMapsOptions,
-    placement: &PlacementOptions,
-    max_memory: u64,
-) -> BakeResult<()> {
+fn check_material(map: &NormalMap, options: &NdfMapsOptions, placement: &PlacementOptions) -> BakeResult<()> {
     check_size(map).map_err(|error| match error {
         BakeError::LimitExceeded(why) => BakeError::LimitExceeded(format!(
             "{why} with --crop WxH+X+Y, or bake all of it with glint-bake lobes (in a project: method = \"lobes\" in a table \
@@ -272,21 +264,7 @@ fn check_material(
         )),
         other => other,
     })?;
-    let needed = tile_count(map.width, map.height, options.min_tile) * PAPER_TILE_BYTES;
-    if options.storage == DensityStorage::PaperF32 && needed > max_memory {
-        return Err(BakeError::LimitExceeded(format!(
-            "the paper's layout needs {needed} bytes, the limit is {max_memory}; raise --max-memory or give --storage u8"
-        )));
-    }
     place(map, options.roughness, placement).map(|_| ())
-}
-
-/// Tiles of all levels of an example, from tiles of `min_tile` texels on.
-fn tile_count(width: u32, height: u32, min_tile: u32) -> u64 {
-    ndf_bake::levels(width, height, min_tile)
-        .iter()
-        .map(|level| u64::from(level.tiles_x) * u64::from(level.tiles_y))
-        .sum()
 }
 
 /// The bytes of a pack of materials.

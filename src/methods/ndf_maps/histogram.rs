@@ -1,18 +1,18 @@
-//! How many tiles have which error, as an SVG.
+//! How many nodes have which error, as an SVG.
 
 use crate::plot::{Axis, Colour, Figure, Panel, Series};
 use glint_bake_core::ndf_maps::baked::BakedNdfMaps;
 
 const BINS: usize = 40;
 
-/// Histogram of tile errors, with lines at the mean, the 95th percentile and the error that was asked for.
+/// Histogram of node errors, with lines at the mean, the 95th percentile and the error that was asked for.
 pub fn svg(name: &str, maps: &BakedNdfMaps) -> String {
     let measured = maps.params.measured;
     let asked = f64::from(maps.params.max_error);
     let end = measured.worst.max(asked).max(1e-6) * 1.05;
     let mut counts = [0u32; BINS];
-    for tile in &maps.tiles {
-        counts[((f64::from(tile.error) / end * BINS as f64) as usize).min(BINS - 1)] += 1;
+    for error in &maps.params.node_errors {
+        counts[((f64::from(*error) / end * BINS as f64) as usize).min(BINS - 1)] += 1;
     }
     let most = f64::from(counts.iter().copied().max().unwrap_or(0).max(1));
     let wide = 100.0 * end / BINS as f64;
@@ -23,9 +23,9 @@ pub fn svg(name: &str, maps: &BakedNdfMaps) -> String {
         Series::line(&format!("{label} {at:.3} %"), colour, vec![(at, 0.0), (at, most)])
     };
     let mut figure = Figure::of(Panel {
-        title: format!("{name}: E₁ of {} tiles", maps.tiles.len()),
+        title: format!("{name}: E₁ of {} nodes", maps.nodes.len()),
         x: Axis::linear("E₁", (0.0, 100.0 * end), 4).unit(" %"),
-        y: Axis::linear("tiles", (0.0, most), 1),
+        y: Axis::linear("nodes", (0.0, most), 1),
         series: vec![
             Series::bars("", Colour::Sky, 0.9 * wide, bars),
             rule("mean", measured.mean, Colour::Green),

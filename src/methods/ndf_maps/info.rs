@@ -1,19 +1,17 @@
 //! One material of the tiny-example method, as numbers.
 
-use super::args::Storage;
-use crate::cli::values::name_of;
 use crate::methods::contents::{Item, decode_all};
 use crate::quantities::{kib, percent};
 use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::sections;
 use glint_formats::ndf_maps::{
-    CLASSES, DENSITY, LAYERS, LayeredMaterial, MeasuredError, NOISE, NORMALS, PlacementKind, TILES, UNIFORM,
+    CLASSES, DENSITY, LAYERS, LayeredMaterial, Level, MeasuredError, NODES, NOISE, NORMALS, PlacementKind, UNIFORM,
 };
-use glint_formats::{FourCc, Pack, Wrap};
+use glint_formats::{FourCc, Pack};
 use serde::Serialize;
 
-/// Bytes of one tile in the paper's layout: 128 × 128 floats.
-pub const PAPER_TILE_BYTES: u64 = 128 * 128 * 4;
+/// Bytes of one tile in the paper's layout: 128 × 128 floats (Xing et al. 2024, section 5.2).
+const PAPER_TILE_BYTES: u64 = 128 * 128 * 4;
 
 /// One material of the tiny-example method.
 #[derive(Debug, Serialize)]
@@ -24,17 +22,13 @@ pub struct MaterialInfo {
     pub width: u32,
     /// Example height in texels.
     pub height: u32,
-    /// `repeat` or `clamp`.
-    pub wrap: &'static str,
     /// σ_r.
     pub intrinsic_roughness: f32,
-    /// `u8`, `f16` or `paper`.
-    pub storage: String,
     /// Levels, finest first.
     pub levels: Vec<LevelInfo>,
     /// Bytes of each part on a GPU.
     pub bytes: PartBytes,
-    /// E₁ that was asked of every tile.
+    /// E₁ that was asked of nodes on average.
     pub max_error: f32,
     /// Error as the bake measured it.
     pub measured: MeasuredError,
@@ -45,26 +39,26 @@ pub struct MaterialInfo {
 /// One level.
 #[derive(Debug, Serialize)]
 pub struct LevelInfo {
-    /// Edge of a tile in example texels.
-    pub tile_texels: u32,
+    /// Standard deviation of its windows in example texels.
+    pub window: f64,
     /// Columns.
-    pub tiles_x: u32,
+    pub nodes_x: u32,
     /// Rows.
-    pub tiles_y: u32,
-    /// Density texels of all its tiles.
-    pub density_texels: u64,
-    /// Mean E₁ of its tiles.
+    pub nodes_y: u32,
+    /// Texels of the atlas that its nodes' tables take.
+    pub atlas_texels: u64,
+    /// Mean E₁ of its nodes.
     pub mean_error: f64,
-    /// Worst E₁ of its tiles.
+    /// Worst E₁ of its nodes.
     pub worst_error: f64,
 }
 
 /// Bytes of each part on a GPU.
 #[derive(Debug, Serialize)]
 pub struct PartBytes {
-    /// Uniform: levels, palette, reach mask, tile records; and the table of tiles that are many.
-    pub tiles: u64,
-    /// Density, in blocks or words.
+    /// Uniform (levels, palette, reach mask) and the table of nodes.
+    pub nodes: u64,
+    /// Density, the atlas.
     pub density: u64,
     /// Example normals.
     pub normals: u64,
@@ -72,7 +66,7 @@ pub struct PartBytes {
     pub placement: u64,
     /// All of the above: what a GPU holds.
     pub total: u64,
-    /// What the paper's layout takes for the tiles.
+    /// What the paper's tiles of this example take in its layout.
     pub paper: u64,
 }
 
@@ -92,25 +86,20 @@ impl MaterialInfo {
     fn of(name: &str, material: &Material, pack: &Pack) -> MaterialInfo {
         let params = &material.maps.params;
         let raw = |kind: FourCc| pack.find(kind, name).map_or(0, |entry| entry.raw_len);
-        let (tiles, placement) = (raw(UNIFORM) + raw(TILES), raw(NOISE) + raw(CLASSES));
+        let (nodes, placement) = (raw(UNIFORM) + raw(NODES), raw(NOISE) + raw(CLASSES));
         let bytes = PartBytes {
-            tiles,
+            nodes,
             density: raw(DENSITY),
             normals: raw(NORMALS),
             placement,
-            total: tiles + raw(DENSITY) + raw(NORMALS) + placement,
-            paper: material.maps.tiles.len() as u64 * PAPER_TILE_BYTES,
+            total: nodes + raw(DENSITY) + raw(NORMALS) + placement,
+            paper: paper_tiles(params.width, params.height) * PAPER_TILE_BYTES,
         };
         MaterialInfo {
             name: name.to_owned(),
             width: params.width,
             height: params.height,
-            wrap: match params.wrap {
-                Wrap::Repeat => "repeat",
-                Wrap::Clamp => "clamp",
-            },
             intrinsic_roughness: params.intrinsic_roughness,
-            storage: name_of(&Storage::from(params.storage)),
             levels: levels(material),
             bytes,
             max_error: params.max_error,
@@ -128,14 +117,14 @@ impl MaterialInfo {
         }
     }
 
-    /// Number of tiles.
-    pub fn tile_count(&self) -> u64 {
-        self.levels.iter().map(|level| u64::from(level.tiles_x) * u64::from(level.tiles_y)).sum()
+    /// Number of nodes.
+    fn node_count(&self) -> u64 {
+        self.levels.iter().map(|level| u64::from(level.nodes_x) * u64::from(level.nodes_y)).sum()
     }
 
-    /// Bytes of tiles, densities and normals: what stands against the paper's layout.
+    /// Bytes of nodes, density and normals: what stands against the paper's layout.
     pub fn map_bytes(&self) -> u64 {
-        self.bytes.tiles + self.bytes.density + self.bytes.normals
+        self.bytes.nodes + self.bytes.density + self.bytes.normals
     }
 
     /// Describes every material of a sound pack.
@@ -148,8 +137,8 @@ impl MaterialInfo {
     fn size_and_error(&self) -> String {
         let factor = self.bytes.paper as f64 / self.map_bytes().max(1) as f64;
         format!(
-            "{} tiles, {} (paper's layout {}, {factor:.0}×), E₁ mean {}, p95 {}, worst {}",
-            self.tile_count(),
+            "{} nodes, {} (paper's layout {}, {factor:.0}×), E₁ mean {}, p95 {}, worst {}",
+            self.node_count(),
             kib(self.map_bytes()),
             kib(self.bytes.paper),
             percent(self.measured.mean),
@@ -176,23 +165,23 @@ impl Item for MaterialInfo {
             out.push('\n');
         };
         line(format!("material \"{}\"", self.name));
-        line(format!("  example      {} × {} texels, {}", self.width, self.height, self.wrap));
+        line(format!("  example      {} × {} texels", self.width, self.height));
         line(format!("  σ_r          {}", self.intrinsic_roughness));
-        line(format!("  storage      {}, E₁ {} asked", self.storage, percent(f64::from(self.max_error))));
-        line("  levels       tile      tiles   density texels   E₁ mean     worst".into());
+        line(format!("  asked        E₁ {} on average", percent(f64::from(self.max_error))));
+        line("  levels     window      nodes     atlas texels   E₁ mean     worst".into());
         for level in &self.levels {
-            let grid = format!("{} × {}", level.tiles_x, level.tiles_y);
+            let grid = format!("{} × {}", level.nodes_x, level.nodes_y);
             let (mean, worst) = (percent(level.mean_error), percent(level.worst_error));
             line(format!(
-                "           {:>8} {grid:>10} {:>16} {mean:>9} {worst:>9}",
-                level.tile_texels, level.density_texels
+                "           {:>8.3} {grid:>10} {:>16} {mean:>9} {worst:>9}",
+                level.window, level.atlas_texels
             ));
         }
         line(format!("  accuracy     {}", self.size_and_error()));
         line(format!("  energy       {:.1e} at most from 1", self.measured.energy));
         line(format!(
-            "  bytes        tiles {}, density {}, normals {}, placement {}",
-            bytes.tiles, bytes.density, bytes.normals, bytes.placement
+            "  bytes        nodes {}, density {}, normals {}, placement {}",
+            bytes.nodes, bytes.density, bytes.normals, bytes.placement
         ));
         line(match self.placement {
             PlacementInfo::Tiled => "  placement    tiled".into(),
@@ -234,18 +223,48 @@ impl Item for LayersInfo {
 }
 
 fn levels(material: &Material) -> Vec<LevelInfo> {
-    let describe = |level: &glint_formats::ndf_maps::Level| {
-        let first = level.first_tile as usize;
-        let tiles = &material.maps.tiles[first..first + (level.tiles_x * level.tiles_y) as usize];
-        let errors = tiles.iter().map(|tile| f64::from(tile.error));
+    let maps = &material.maps;
+    let mut variance = f64::from(maps.params.finest_variance);
+    let mut describe = |level: &Level| {
+        let nodes = level.first_node as usize..level.first_node as usize + level.nodes() as usize;
+        let errors = maps.params.node_errors[nodes.clone()].iter().map(|error| f64::from(*error));
+        let texels = |[width, height]: [u32; 2]| u64::from(width) * u64::from(height);
+        let window = variance.sqrt();
+        variance *= 2.0;
         LevelInfo {
-            tile_texels: level.tile_texels,
-            tiles_x: level.tiles_x,
-            tiles_y: level.tiles_y,
-            density_texels: tiles.iter().map(|tile| u64::from(tile.width()) * u64::from(tile.height())).sum(),
-            mean_error: errors.clone().sum::<f64>() / tiles.len() as f64,
+            window,
+            nodes_x: level.nodes_x,
+            nodes_y: level.nodes_y,
+            atlas_texels: maps.nodes[nodes].iter().map(|node| texels(node.size())).sum(),
+            mean_error: errors.clone().sum::<f64>() / level.nodes() as f64,
             worst_error: errors.fold(0.0, f64::max),
         }
     };
-    material.maps.params.levels.iter().map(describe).collect()
+    maps.params.levels.iter().map(&mut describe).collect()
+}
+
+/// Tiles that the paper bakes for an example: of 2, 4, 8, … texels, up to one that covers it (Xing et al. 2024, section 5.2).
+fn paper_tiles(width: u32, height: u32) -> u64 {
+    let mut edge = 2;
+    let mut tiles = 0;
+    loop {
+        let of_level = u64::from(width.div_ceil(edge)) * u64::from(height.div_ceil(edge));
+        tiles += of_level;
+        if of_level == 1 {
+            return tiles;
+        }
+        edge *= 2;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::paper_tiles;
+
+    #[test]
+    fn the_paper_s_tiles_are_those_of_all_levels() {
+        assert_eq!(paper_tiles(1, 1), 1);
+        assert_eq!(paper_tiles(16, 16), 64 + 16 + 4 + 1);
+        assert_eq!(paper_tiles(5, 3), 3 * 2 + 2 + 1);
+    }
 }

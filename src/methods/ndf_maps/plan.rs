@@ -1,18 +1,17 @@
-//! Drafts of NDF maps: which tiles the scene's footprints read, and bytes against E₁ at those footprints.
+//! Drafts of NDF maps: which windows the scene's footprints read, and bytes against E₁ at those footprints, as a shader reads them.
 
-use super::args::{Args, Storage};
+use super::args::Args;
 use super::bake::draft;
-use crate::cli::values::name_of;
 use crate::exit::{Exit, Failure};
 use crate::methods::bake::Candidates;
 use crate::methods::planning::{Request, sizes};
 use crate::quantities::kib;
 use crate::scene::Footprints;
-use glam::DVec2;
+use glam::{DMat2, DVec2};
 use glint_bake_core::footprint::Footprint;
 use glint_bake_core::ndf_maps::baked::Material;
-use glint_bake_core::ndf_maps::eval::EvalSettings;
-use glint_bake_core::ndf_maps::options::FINEST_TILE;
+use glint_bake_core::ndf_maps::eval::{EvalSettings, matrix};
+use glint_bake_core::ndf_maps::options::{FINEST_WINDOW_RANGE, NdfMapsOptions};
 use glint_bake_core::ndf_maps::quality::ExactNdf;
 use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
 use glint_bake_core::ndf_maps::sections;
@@ -21,22 +20,13 @@ use glint_bake_core::quality::sweep::footprints;
 use glint_formats::Pack;
 use rayon::prelude::*;
 
-/// Storage and error asked of tiles, from few bytes to many.
-const SETTINGS: [(Storage, f64); 6] = [
-    (Storage::U8, 0.2),
-    (Storage::U8, 0.1),
-    (Storage::U8, 0.05),
-    (Storage::U8, 0.02),
-    (Storage::U8, 0.01),
-    (Storage::F16, 0.003),
-];
+/// Errors asked of nodes, from few bytes to many.
+const ERRORS: [f64; 6] = [0.2, 0.1, 0.05, 0.03, 0.02, 0.01];
 /// Sizes of footprints that are measured, at most, and places of each.
 const SIZES: usize = 3;
 const PLACES: u32 = 6;
 /// Footprints wider than so many edges of the example see all of it, however wide they are.
 const WIDEST_EDGES: f64 = 1.0;
-/// Footprints that are asked which tiles they read.
-const PROBES: u32 = 512;
 /// Examples along the surface that footprints lie on.
 const EXTENT: f64 = 32.0;
 const SEED: u64 = 21;
@@ -53,20 +43,24 @@ struct Size {
 pub fn candidates(args: &Args, request: &Request<'_>) -> Result<Candidates, Failure> {
     let view = request.surface()?;
     let base = Args { output: request.output.to_owned(), ..args.clone() };
-    let asked = |(storage, error): (Storage, f64), tile: u32, settings: bool| {
+    // A preset says the error, so that there is nothing to choose but the windows.
+    let preset = request.fixes("preset");
+    let asked = |error: f64, window: Option<f64>| {
         let mut choice = request.choice(base.clone());
-        if settings {
-            choice.choose("storage", name_of(&storage), |args| args.storage = Some(storage));
+        if !preset {
             choice.choose("max-error", error, |args| args.max_error = Some(error));
         }
-        choice.choose("min-tile", tile, |args| args.min_tile = tile);
+        if let Some(window) = window {
+            choice.choose("finest-window", window, |args| args.finest_window = Some(window));
+        }
         choice
     };
-    let (made, all_bytes) = draft(&asked(SETTINGS[0], FINEST_TILE, true).args)?;
+    let (made, all_bytes) = draft(&asked(ERRORS[0], None).args)?;
     let footprints: Vec<Footprints> = made.iter().map(|(map, _)| request.scene.footprints(view, map.width)).collect();
     let covering = made.iter().zip(&footprints);
-    let tile = covering.map(|((map, material), footprints)| finest_tile(map, material, footprints)).min();
-    let tile = tile.unwrap_or(FINEST_TILE);
+    let windows = covering.map(|((map, material), footprints)| finest_window(map, material, footprints));
+    let window = windows.fold(f64::INFINITY, f64::min);
+    let window = (window > NdfMapsOptions::default().finest_window).then_some(window);
     let sizes: Vec<Vec<Size>> = made
         .iter()
         .zip(&footprints)
@@ -74,23 +68,24 @@ pub fn candidates(args: &Args, request: &Request<'_>) -> Result<Candidates, Fail
         .collect();
     drop(made);
     let mut found = Candidates::new(line(&footprints));
-    // A preset says both, so that there is nothing to choose but the tiles.
-    let preset = request.fixes("preset");
-    let settings = if preset { &SETTINGS[..1] } else { &SETTINGS[..] };
-    for setting in settings {
-        let choice = asked(*setting, tile, !preset);
+    let errors = if preset { &ERRORS[..1] } else { &ERRORS[..] };
+    for error in errors {
+        let choice = asked(*error, window);
         if found.has(&choice.options) {
             continue;
         }
         let (made, bytes) = match draft(&choice.args) {
             Ok(draft) => draft,
-            // A setting that misses the error it asks for is none to choose.
+            // An error that the bake misses is none to choose.
             Err(failure) if failure.exit == Exit::LimitExceeded && !found.drafts.is_empty() => continue,
             Err(failure) => return Err(failure),
         };
-        if found.drafts.is_empty() && bytes < all_bytes {
+        if let Some(window) = window
+            && found.drafts.is_empty()
+            && bytes < all_bytes
+        {
             found.dropped.push(format!(
-                "tiles finer than {tile} texels: no footprint reads them ({} at this error)",
+                "windows narrower than {window} texels: no footprint reads them ({} at this error)",
                 kib(all_bytes - bytes)
             ));
         }
@@ -131,25 +126,18 @@ fn extent(map: &NormalMap) -> DVec2 {
     DVec2::new(f64::from(map.width), f64::from(map.height)) * EXTENT
 }
 
-/// Edge of the finest tile that any of many footprints of the scene reads; that of the covering tile where none reads one.
-fn finest_tile(map: &NormalMap, material: &Material, visible: &Footprints) -> u32 {
-    let levels = &material.maps.params.levels;
-    let covering = levels.last().map_or(2, |level| level.tile_texels);
-    let (low, high) = (visible.sigma.0.min(widest(map)), visible.sigma.1.min(widest(map)));
-    let edge_of = |tile: u32| {
-        let level = levels.iter().rev().find(|level| level.first_tile <= tile);
-        level.map_or(covering, |level| level.tile_texels)
+/// The widest finest window, in texels, that no footprint of the scene is narrower than, to three decimals. A footprint is narrowest in
+/// the example along the axis that a transform of the palette shrinks most.
+fn finest_window(map: &NormalMap, material: &Material, visible: &Footprints) -> f64 {
+    let shrinks = |m: DMat2| {
+        let (area, squares) = (m.determinant().abs(), m.x_axis.length_squared() + m.y_axis.length_squared());
+        // The singular values have this sum and difference.
+        0.5 * ((squares + 2.0 * area).sqrt() - (squares - 2.0 * area).max(0.0).sqrt())
     };
-    let probe = |k: u32| {
-        // Both ends are among them, round and long.
-        let share = f64::from(k / 2 % 32) / 31.0;
-        let anisotropy = if k.is_multiple_of(2) { 1.0 } else { visible.anisotropy };
-        let sigma = low * libm::pow(high / low, share);
-        let all = footprints(sigma, anisotropy, extent(map), 1, SEED + u64::from(k));
-        let terms = material.gather(&all[0], EvalSettings::default());
-        terms.tiles.iter().map(|term| edge_of(term.tile)).min().unwrap_or(covering)
-    };
-    (0..PROBES).map(probe).min().unwrap_or(covering)
+    let palette = material.placement.palette.iter();
+    let smallest =
+        palette.map(|entry| shrinks(matrix(entry.position_to_local).as_dmat2())).fold(f64::INFINITY, f64::min);
+    (1e3 * visible.sigma.0.min(widest(map)) * smallest).floor().min(1e3 * FINEST_WINDOW_RANGE.1) / 1e3
 }
 
 /// What footprints of each size should see.
@@ -168,10 +156,10 @@ fn exact(map: &NormalMap, material: &Material, visible: &Footprints, places: u32
     all
 }
 
-/// Mean E₁ over the footprints of a size, the largest of all sizes.
+/// Mean E₁ over the footprints of a size, read as a shader reads them, the largest of all sizes.
 fn worst(material: &Material, sizes: &[Size]) -> f64 {
     let of_one = |(footprint, exact): &(Footprint, ExactNdf)| {
-        let terms = material.gather(footprint, EvalSettings::default());
+        let terms = material.gather(footprint, EvalSettings::REAL_TIME);
         exact.error(|s| material.density(&terms, s)).e1
     };
     let mean = |size: &Size| {

@@ -1,4 +1,4 @@
-//! Pictures of NDF tiles, of the example's normals, and of who owns which sub-region of a stochastic surface.
+//! Pictures of the NDFs of nodes, of the example's normals, and of who owns which sub-region of a stochastic surface.
 
 use super::histogram;
 use crate::canvas::{Canvas, colour_wheel, heat};
@@ -12,12 +12,12 @@ use glint_formats::ndf_maps::{Level, PARAMS, PlacementKind};
 
 const BACKGROUND: [u8; 3] = [16, 16, 20];
 const CIRCLE: [u8; 3] = [70, 74, 84];
-/// Most tiles a row and a column of a sheet; more would be too small to see.
-const MAX_TILES: u32 = 64;
+/// Most nodes a row and a column of a sheet; more would be too small to see.
+const MAX_NODES: u32 = 64;
 /// Most cells a side of a placement picture.
 const MAX_CELLS: u32 = 64;
 
-/// Pictures of every material: tiles of each level, normals, placement, and errors of tiles.
+/// Pictures of every material: nodes of each level, normals, placement, and errors of nodes.
 ///
 /// # Errors
 /// Bad input, when a material cannot be used; those of `write`.
@@ -25,9 +25,9 @@ pub fn write_all(pack: &Pack, write: &mut WritePlot<'_>) -> Result<(), Failure> 
     for (stem, name) in stems(pack, PARAMS) {
         let material = sections::from_pack(pack, name)
             .map_err(|e| Failure::new(Exit::BadInput, format!("material {name}: {e}")))?;
-        for level in &material.maps.params.levels {
+        for (k, level) in material.maps.params.levels.iter().enumerate() {
             let sheet = contact_sheet(&material.maps, level);
-            write(format!("{stem}-tiles-{}.png", level.tile_texels), sheet.to_png())?;
+            write(format!("{stem}-nodes-{k}.png"), sheet.to_png())?;
         }
         write(format!("{stem}-normals.png"), normals(&material.maps).to_png())?;
         if let Some(owners) = owners(&material.placement) {
@@ -38,15 +38,15 @@ pub fn write_all(pack: &Pack, write: &mut WritePlot<'_>) -> Result<(), Failure> 
     Ok(())
 }
 
-/// All tiles of a level: each a unit disk with +Y up, brightness the square root of density relative to the level's peak.
+/// All nodes of a level, row by row: each a unit disk with +Y up, brightness the square root of density relative to the level's peak.
 fn contact_sheet(maps: &BakedNdfMaps, level: &Level) -> Canvas {
-    let (columns, rows) = (level.tiles_x.min(MAX_TILES), level.tiles_y.min(MAX_TILES));
+    let (columns, rows) = (level.nodes_x.min(MAX_NODES), level.nodes_y.min(MAX_NODES));
     let cell = (1024 / columns.max(rows)).clamp(24, 320);
     let mut values = vec![0.0f32; (columns * cell * rows * cell) as usize];
     for y in 0..rows * cell {
         for x in 0..columns * cell {
-            let tile = level.first_tile + (y / cell) * level.tiles_x + x / cell;
-            values[(y * columns * cell + x) as usize] = mean_density(maps, tile, x % cell, y % cell, cell);
+            let node = level.first_node + (y / cell) * level.nodes_x + x / cell;
+            values[(y * columns * cell + x) as usize] = mean_density(maps, node, x % cell, y % cell, cell);
         }
     }
     let peak = values.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
@@ -66,12 +66,12 @@ fn contact_sheet(maps: &BakedNdfMaps, level: &Level) -> Canvas {
 }
 
 /// Density of a pixel, from four points of it, since a narrow peak may lie between pixel centres.
-fn mean_density(maps: &BakedNdfMaps, tile: u32, x: u32, y: u32, cell: u32) -> f32 {
+fn mean_density(maps: &BakedNdfMaps, node: u32, x: u32, y: u32, cell: u32) -> f32 {
     let offsets = [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)];
-    offsets.iter().map(|&(a, b)| 0.25 * maps.tile_density(tile, disk_point(x, y, cell, Vec2::new(a, b)))).sum()
+    offsets.iter().map(|&(a, b)| 0.25 * maps.node_density(node, disk_point(x, y, cell, Vec2::new(a, b)))).sum()
 }
 
-/// Projected normal at a point of pixel (x, y) of a tile's square, which is a little wider than the disk.
+/// Projected normal at a point of pixel (x, y) of a node's square, which is a little wider than the disk.
 fn disk_point(x: u32, y: u32, cell: u32, inside: Vec2) -> Vec2 {
     let p = (Vec2::new(x as f32, y as f32) + inside) / cell as f32 * 2.0 - 1.0;
     Vec2::new(p.x, -p.y) * 1.04

@@ -15,7 +15,7 @@ use glint_bake_core::ndf_maps::sections::to_sections;
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::quality::sweep::{ANISOTROPIES, FOOTPRINTS, SIGMAS_TEXELS, footprints as sweep_footprints};
-use glint_formats::ndf_maps::{DensityStorage, MeasuredError};
+use glint_formats::ndf_maps::{MeasuredError, STEPS_PER_ROUGHNESS};
 use glint_formats::{Codec, Resource};
 use std::time::Instant;
 
@@ -32,11 +32,10 @@ pub struct Example {
 /// One way to bake.
 pub struct Setting {
     pub roughness: f64,
-    pub label: String,
+    /// E₁ asked of nodes.
+    pub max_error: f64,
     /// Bytes of all sections that a GPU holds, tiled placement.
     pub gpu_bytes: usize,
-    /// Bytes of tiles, normals and densities with each texel once, as the file of an engine that expands them itself would have them.
-    pub compact_bytes: usize,
     pub milliseconds: f64,
     pub error: MeasuredError,
     /// No other setting of this roughness has fewer bytes and a smaller mean error.
@@ -52,7 +51,7 @@ pub struct Size {
     pub cost: Cost,
 }
 
-/// One run-time setting on the stochastic surface: means over round footprints of all sizes.
+/// One run-time setting on the stochastic surface: means over footprints of all sizes, [`DIAL_ANISOTROPY`] times as long as wide.
 pub struct Dial {
     pub settings: EvalSettings,
     pub mean_error: f64,
@@ -68,12 +67,14 @@ pub struct Cost {
     pub query: f64,
 }
 
-/// Run-time settings from fast to accurate; the third is the default.
+/// Ratio of axes of the footprints that run-time settings are measured at: more than the fast ones see.
+pub const DIAL_ANISOTROPY: f64 = 8.0;
+/// Run-time settings from fast to accurate.
 const DIAL: [EvalSettings; 4] = [
-    EvalSettings { tile_sigmas: 4.0, lobe_sigmas: 1.0, max_terms: 32, splits: 0, reach: 2.8, probes: 0 },
-    EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 1.0, max_terms: 64, splits: 0, reach: 2.8, probes: 0 },
-    EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 0.75, max_terms: 128, splits: 1, reach: 2.8, probes: 0 },
-    EvalSettings { tile_sigmas: 0.5, lobe_sigmas: 0.5, max_terms: 2048, splits: 2, reach: 2.8, probes: 0 },
+    EvalSettings { max_ratio: 2.0, reach: 2.0 },
+    EvalSettings::REAL_TIME,
+    EvalSettings { max_ratio: 8.0, reach: 3.0 },
+    EvalSettings::ACCURATE,
 ];
 
 /// Measures an example with `count` footprints a size.
@@ -93,7 +94,7 @@ pub fn example(map: &NormalMap, count: u32, scale: &Settings) -> Result<Example>
         for anisotropy in ANISOTROPIES {
             for sigma in SIGMAS_TEXELS {
                 let (errors, cost) =
-                    measured(map, &reference, sigma, anisotropy, count, EvalSettings::default(), scale);
+                    measured(map, &reference, sigma, anisotropy, count, EvalSettings::REAL_TIME, scale);
                 sizes.push(Size { placement: name, sigma, anisotropy, errors, cost });
             }
         }
@@ -116,7 +117,7 @@ fn dial_setting(
     let mut dial = Dial { settings, mean_error: 0.0, cost: Cost::default() };
     let share = 1.0 / SIGMAS_TEXELS.len() as f64;
     for sigma in SIGMAS_TEXELS {
-        let (errors, cost) = measured(map, reference, sigma, 1.0, count, settings, scale);
+        let (errors, cost) = measured(map, reference, sigma, DIAL_ANISOTROPY, count, settings, scale);
         dial.mean_error += errors.e1.mean * share;
         dial.cost.gather += cost.gather * share;
         dial.cost.query += cost.query * share;
@@ -146,9 +147,11 @@ fn measured(
 /// rounds, because other work on the machine only ever adds to it.
 fn cost(material: &Material, footprints: &[Footprint], settings: EvalSettings, rounds: usize) -> Cost {
     const SIDE: usize = 8;
-    let top = material.maps.tiles[material.maps.tiles.len() - 1];
-    let low = Vec2::from(top.origin);
-    let size = Vec2::new(top.width() as f32, top.height() as f32) / Vec2::from(top.inv_spacing);
+    let top = material.maps.nodes[material.maps.nodes.len() - 1];
+    let step = material.maps.params.intrinsic_roughness / STEPS_PER_ROUGHNESS;
+    let vec2 = |[x, y]: [u32; 2]| Vec2::new(x as f32, y as f32);
+    let low = vec2(top.origin()) * step - 1.0;
+    let size = vec2(top.size()) * vec2(top.spacing()) * step;
     let mut least = Cost { gather: f64::INFINITY, query: f64::INFINITY };
     for _ in 0..rounds {
         let begin = Instant::now();
@@ -169,23 +172,20 @@ fn cost(material: &Material, footprints: &[Footprint], settings: EvalSettings, r
     least
 }
 
-/// Bakes with every storage and several errors asked, at the roughnesses of the accuracy targets; at the largest alone for
+/// Bakes with several errors asked, at the roughnesses of the accuracy targets; at the largest alone for
 /// a quick look.
 fn settings(map: &NormalMap, scale: &Settings) -> Result<Vec<Setting>> {
     let mut all = Vec::new();
     for roughness in [0.02, 0.01, 0.005].into_iter().take(scale.pick(3, 1)) {
         let first = all.len();
-        let own = [0.1, 0.05, 0.02, 0.01, 0.005].map(|error| (DensityStorage::SqrtU8, error));
-        let others = [(DensityStorage::F16, 0.01), (DensityStorage::F16, 0.003), (DensityStorage::PaperF32, 0.01)];
-        for (storage, max_error) in own.into_iter().chain(others) {
-            let options = NdfMapsOptions { roughness, max_error, storage, ..NdfMapsOptions::default() };
+        for max_error in [0.2, 0.1, 0.05, 0.03, 0.02, 0.01] {
+            let options = NdfMapsOptions { roughness, max_error, ..NdfMapsOptions::default() };
             let begin = Instant::now();
             let baked = bake_maps(map, &options, &Silent)?;
             let milliseconds = begin.elapsed().as_secs_f64() * 1e3;
-            let (compact_bytes, error) = (baked.compact_bytes(), baked.params.measured);
+            let error = baked.params.measured;
             let gpu_bytes = gpu_bytes(map, roughness, baked)?;
-            let label = label(storage, max_error);
-            all.push(Setting { roughness, label, gpu_bytes, compact_bytes, milliseconds, error, on_front: false });
+            all.push(Setting { roughness, max_error, gpu_bytes, milliseconds, error, on_front: false });
         }
         mark_front(&mut all[first..]);
     }
@@ -198,14 +198,6 @@ fn gpu_bytes(map: &NormalMap, roughness: f64, maps: BakedNdfMaps) -> Result<usiz
     let sections = to_sections("", &Material { maps, placement }, Codec::None);
     let on_gpu = sections.iter().filter(|section| section.resource != Resource::Parameters);
     Ok(on_gpu.map(|section| section.payload.len()).sum())
-}
-
-fn label(storage: DensityStorage, max_error: f64) -> String {
-    match storage {
-        DensityStorage::SqrtU8 => format!("u8, {} % asked", max_error * 100.0),
-        DensityStorage::F16 => format!("f16, {} % asked", max_error * 100.0),
-        DensityStorage::PaperF32 => "the paper's layout".to_owned(),
-    }
 }
 
 fn mark_front(settings: &mut [Setting]) {

@@ -12,7 +12,7 @@ use crate::input::load_normal_map;
 use crate::plot::{Axis, Colour, Figure, Panel, Series};
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::quality::sweep::ANISOTROPIES;
-use measurement::{Dial, Example, Setting, Size};
+use measurement::{DIAL_ANISOTROPY, Dial, Example, Setting, Size};
 use std::path::PathBuf;
 
 /// The example that is measured when the user has none.
@@ -52,18 +52,14 @@ fn load(settings: &Settings) -> Result<Vec<(PathBuf, NormalMap)>, Failure> {
 }
 
 fn tables(document: &mut Document, measured: &Example) {
-    document.paragraph("Bake: every tile against the bake's own exact grid.");
-    let mut table = Table::new(
-        2,
-        "σ_r | storage | KiB on the GPU | KiB, each texel once | bake ms | E₁ mean | p95 | worst | energy | ",
-    );
+    document.paragraph("Bake: every node against the bake's own exact grid.");
+    let mut table = Table::new(2, "σ_r | E₁ asked | KiB on the GPU | bake ms | E₁ mean | p95 | worst | energy | ");
     for s in &measured.settings {
         table.row(format!(
-            "{} | {} | {:.1} | {:.1} | {:.0} | {} | {} | {} | {:.0e} | {}",
+            "{} | {} % | {:.1} | {:.0} | {} | {} | {} | {:.0e} | {}",
             s.roughness,
-            s.label,
+            100.0 * s.max_error,
             s.gpu_bytes as f64 / 1024.0,
-            s.compact_bytes as f64 / 1024.0,
             s.milliseconds,
             percent(s.error.mean),
             percent(s.error.p95),
@@ -75,14 +71,16 @@ fn tables(document: &mut Document, measured: &Example) {
     document.table(&table);
     document.paragraph(
         "Surfaces: footprints on 32 × 32 placed examples (and their repetition) against the normal map that the placement \
-         describes, σ_r = 0.02, 1 % asked of tiles. σ is the footprint's minor standard deviation in texels; texels are \
-         density texels read a query.",
+         describes, σ_r = 0.02, 3 % asked of nodes, run-time settings of pictures. σ is the footprint's minor standard \
+         deviation in texels; nodes and patches are what a query evaluates.",
     );
-    let mut table =
-        Table::new(1, "placement | σ | anisotropy | E₁ mean | p95 | worst | terms | texels | footprint µs | query µs");
+    let mut table = Table::new(
+        1,
+        "placement | σ | anisotropy | E₁ mean | p95 | worst | nodes and patches | footprint µs | query µs",
+    );
     for s in &measured.sizes {
         table.row(format!(
-            "{} | {} | {} | {} | {} | {} | {:.0} | {:.0} | {:.1} | {:.2}",
+            "{} | {} | {} | {} | {} | {} | {:.0} | {:.1} | {:.2}",
             s.placement,
             s.sigma,
             s.anisotropy,
@@ -90,7 +88,6 @@ fn tables(document: &mut Document, measured: &Example) {
             percent(s.errors.e1.p95),
             percent(s.errors.e1.worst),
             s.errors.terms,
-            s.errors.texels,
             s.cost.gather,
             s.cost.query
         ));
@@ -113,18 +110,16 @@ fn tables(document: &mut Document, measured: &Example) {
         }
         document.paragraph(format!("{placement}: mean E₁ over all sizes {}.", percent(mean)));
     }
-    document.paragraph("Run-time settings on the stochastic surface, means over round footprints of all sizes.");
-    let mut table = Table::new(
-        0,
-        "tile edge at most, in σ | lobe's box at most, in σ | terms at most | splits | E₁ mean | footprint µs | query µs",
-    );
+    document.paragraph(format!(
+        "Run-time settings on the stochastic surface, means over footprints of all sizes, {DIAL_ANISOTROPY} times as long as wide."
+    ));
+    let mut table =
+        Table::new(0, "major axis at most, in minor ones | patches within, in σ | E₁ mean | footprint µs | query µs");
     for Dial { settings: s, mean_error, cost } in &measured.dial {
         table.row(format!(
-            "{} | {} | {} | {} | {} | {:.1} | {:.2}",
-            s.tile_sigmas,
-            s.lobe_sigmas,
-            s.max_terms,
-            s.splits,
+            "{} | {} | {} | {:.1} | {:.2}",
+            s.max_ratio,
+            s.reach,
             percent(*mean_error),
             cost.gather,
             cost.query
@@ -155,7 +150,7 @@ fn figure(name: &str, settings: &[Setting]) -> Figure {
     }
     let points = || settings.iter().map(point);
     Figure::of(Panel {
-        title: format!("{name}: mean E₁ of tiles against bytes"),
+        title: format!("{name}: mean E₁ of nodes against bytes"),
         x: Axis::powers_around("KiB on the GPU", points().map(|point| point.0)),
         y: Axis::powers_around("mean E₁", points().map(|point| point.1)).unit(" %"),
         series,

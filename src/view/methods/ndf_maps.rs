@@ -14,17 +14,11 @@ pub fn bind(gpu: &Gpu, pack: &Pack, base: &str, coat: Option<(&str, &str)>) -> R
     bind_parts(gpu, pack, &parts, Wrap::Repeat)
 }
 
-/// Pipeline constants that follow from the data: `NDF_MAPS_LAYERED`, `NDF_MAPS_CELLS`, `NDF_MAPS_BLOCKS` and `NDF_MAPS_FEW_TILES`.
-/// What two layers do not share is left open.
+/// Pipeline constants that follow from the data: `NDF_MAPS_LAYERED` and, where layers share it, `NDF_MAPS_CELLS`.
 pub fn constants(base: &MaterialUniform, coat: Option<&MaterialUniform>) -> Vec<(&'static str, f64)> {
     let mut constants = vec![("NDF_MAPS_LAYERED", f64::from(u8::from(coat.is_some())))];
-    let mut shared = |name: &'static str, of: fn(&MaterialUniform) -> u32| {
-        if coat.is_none_or(|coat| of(coat) == of(base)) {
-            constants.push((name, f64::from(of(base))));
-        }
-    };
-    shared("NDF_MAPS_CELLS", |material| material.cells);
-    shared("NDF_MAPS_BLOCKS", |material| material.blocks);
-    shared("NDF_MAPS_FEW_TILES", |material| material.few_tiles);
+    if coat.is_none_or(|coat| coat.cells == base.cells) {
+        constants.push(("NDF_MAPS_CELLS", f64::from(base.cells)));
+    }
     constants
 }

@@ -11,8 +11,8 @@
 // Section NMUB.
 struct NdfMapsData {
     material: GlintNdfMaterial,
-    // Levels, palette and reach mask, and the tiles if they are few.
-    records: array<vec4u, 4092>,
+    // Levels, palette and reach mask.
+    records: array<vec4u, 256>,
 }
 
 // Section LAUB.
@@ -24,10 +24,10 @@ struct NdfMapsLayers {
 }
 
 @group(1) @binding(0) var<uniform> ndf_maps: NdfMapsData;
-// Section NMTI.
-@group(1) @binding(1) var ndf_maps_tiles: texture_2d<u32>;
+// Section NMND.
+@group(1) @binding(1) var ndf_maps_nodes: texture_2d<u32>;
 // Section NMDE.
-@group(1) @binding(2) var ndf_maps_density: texture_2d<u32>;
+@group(1) @binding(2) var ndf_maps_density: texture_2d<f32>;
 // Section NMNO.
 @group(1) @binding(3) var ndf_maps_normals: texture_2d<u32>;
 // Section PLNO.
@@ -36,12 +36,13 @@ struct NdfMapsLayers {
 @group(1) @binding(5) var ndf_maps_classes: texture_2d_array<f32>;
 // The same sections of the coat. Its uniform bytes are a storage buffer: some adapters fail on branches on a program's fourth uniform.
 @group(1) @binding(6) var<storage, read> ndf_maps_coat: array<vec4u>;
-@group(1) @binding(7) var ndf_maps_coat_tiles: texture_2d<u32>;
-@group(1) @binding(8) var ndf_maps_coat_density: texture_2d<u32>;
+@group(1) @binding(7) var ndf_maps_coat_nodes: texture_2d<u32>;
+@group(1) @binding(8) var ndf_maps_coat_density: texture_2d<f32>;
 @group(1) @binding(9) var ndf_maps_coat_normals: texture_2d<u32>;
 @group(1) @binding(10) var ndf_maps_coat_noise: texture_2d<u32>;
 @group(1) @binding(11) var ndf_maps_coat_classes: texture_2d_array<f32>;
 @group(1) @binding(12) var<storage, read> ndf_maps_layers: NdfMapsLayers;
+@group(1) @binding(13) var ndf_maps_sampler: sampler;
 
 // The base, 0, or the coat, 1.
 fn bind_ndf_maps_material(layer: u32) -> GlintNdfMaterial {
@@ -52,8 +53,8 @@ fn bind_ndf_maps_material(layer: u32) -> GlintNdfMaterial {
             let c = ndf_maps_coat[2];
             let d = ndf_maps_coat[3];
             return GlintNdfMaterial(
-                a.xy, a.z, a.w, bitcast<f32>(b.x), b.y, b.z, b.w, bitcast<f32>(c.x), c.y, c.z, c.w, d.x, d.y,
-                bitcast<f32>(d.z), layer,
+                a.xy, a.z, a.w, bitcast<f32>(b.x), bitcast<f32>(b.y), bitcast<f32>(b.z), b.w, c.x, bitcast<f32>(c.y), c.z, c.w,
+                bitcast<vec2f>(d.xy), layer, bitcast<f32>(d.w),
             );
         }
     }
@@ -70,44 +71,34 @@ fn glint_ndf_record(layer: u32, at: u32) -> vec4u {
     return ndf_maps.records[at];
 }
 
-fn glint_ndf_tile(layer: u32, at: u32) -> vec4u {
+fn glint_ndf_node(layer: u32, at: u32) -> vec4u {
     bound_loads += 1u;
     if NDF_MAPS_LAYERED {
         if layer != 0u {
-            return textureLoad(ndf_maps_coat_tiles, bind_table_place(at), 0);
+            return textureLoad(ndf_maps_coat_nodes, bind_table_place(at), 0);
         }
     }
-    return textureLoad(ndf_maps_tiles, bind_table_place(at), 0);
+    return textureLoad(ndf_maps_nodes, bind_table_place(at), 0);
 }
 
-fn glint_ndf_density_block(layer: u32, at: u32) -> vec3u {
+fn glint_ndf_roots(layer: u32, at: vec2f) -> vec4f {
     bound_loads += 1u;
     if NDF_MAPS_LAYERED {
         if layer != 0u {
-            return textureLoad(ndf_maps_coat_density, bind_table_place(at), 0).xyz;
+            return textureGather(0, ndf_maps_coat_density, ndf_maps_sampler, at);
         }
     }
-    return textureLoad(ndf_maps_density, bind_table_place(at), 0).xyz;
+    return textureGather(0, ndf_maps_density, ndf_maps_sampler, at);
 }
 
-fn glint_ndf_density_word(layer: u32, at: u32) -> u32 {
+fn glint_ndf_normal_texel(layer: u32, at: vec2u) -> vec4u {
     bound_loads += 1u;
     if NDF_MAPS_LAYERED {
         if layer != 0u {
-            return textureLoad(ndf_maps_coat_density, bind_table_place(at), 0).x;
+            return textureLoad(ndf_maps_coat_normals, at, 0);
         }
     }
-    return textureLoad(ndf_maps_density, bind_table_place(at), 0).x;
-}
-
-fn glint_ndf_normal_texel(layer: u32, at: vec2i) -> u32 {
-    bound_loads += 1u;
-    if NDF_MAPS_LAYERED {
-        if layer != 0u {
-            return textureLoad(ndf_maps_coat_normals, at, 0).x;
-        }
-    }
-    return textureLoad(ndf_maps_normals, at, 0).x;
+    return textureLoad(ndf_maps_normals, at, 0);
 }
 
 fn glint_ndf_noise_texel(layer: u32, at: vec2u) -> vec4u {

@@ -12,14 +12,12 @@ struct NdfMapsQuery {
     xx: f32,
     xy: f32,
     yy: f32,
-    tile_sigmas: f32,
-    lobe_sigmas: f32,
-    max_terms: u32,
-    splits: u32,
+    max_ratio: f32,
     reach: f32,
     // 0 for the base, 1 for the coat.
     layer: u32,
-    probes: u32,
+    unused_0: u32,
+    unused_1: u32,
 }
 
 struct NdfMapsAnswer {
@@ -41,7 +39,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let q = queries[id.x];
     let material = bind_ndf_maps_material(q.layer);
-    let settings = GlintNdfSettings(q.tile_sigmas, q.lobe_sigmas, q.max_terms, q.splits, q.reach, q.probes);
+    let settings = GlintNdfSettings(q.max_ratio, q.reach);
     let sum = glint_ndf_density(material, GlintFootprint(q.mean, q.xx, q.xy, q.yy), settings, q.s);
     answers[id.x] = NdfMapsAnswer(
         sum.density,

@@ -16,32 +16,21 @@ const SHADE_NDF_ACCURATE: u32 = 2u;
 override NDF_MAPS_LAYERED: bool = true;
 // Cells of the stochastic placement along an axis, 0 where materials are tiled; 0xffffffff for any.
 override NDF_MAPS_CELLS: u32 = 0xffffffffu;
-// Whether density is in blocks: 1 or 0, 2 for any.
-override NDF_MAPS_BLOCKS: u32 = 2u;
-// Whether tiles are among the records: 1 or 0, 2 for any.
-override NDF_MAPS_FEW_TILES: u32 = 2u;
 // Whether material.switches may have SHADE_NDF_ACCURATE.
 override NDF_MAPS_ACCURATE: bool = true;
 
 fn shade_ndf_settings() -> GlintNdfSettings {
     if NDF_MAPS_ACCURATE && (material.switches & SHADE_NDF_ACCURATE) != 0u {
-        return GlintNdfSettings(1.0, 0.75, 128u, 1u, 2.8, 0u);
+        return GlintNdfSettings(16.0, 4.0);
     }
-    // Tiles four times as large against the footprint, and a narrower one; of random placement two by two places or more, each as
-    // one tile: docs/reports/frames.md has the error.
-    return GlintNdfSettings(4.0, 1.0, 32u, 0u, 2.0, 2u);
+    // EvalSettings::REAL_TIME of the bake.
+    return GlintNdfSettings(4.0, 2.5);
 }
 
 fn shade_ndf_material(layer: u32) -> GlintNdfMaterial {
     var found = bind_ndf_maps_material(layer);
     if NDF_MAPS_CELLS != 0xffffffffu {
         found.cells = NDF_MAPS_CELLS;
-    }
-    if NDF_MAPS_BLOCKS != 2u {
-        found.blocks = NDF_MAPS_BLOCKS;
-    }
-    if NDF_MAPS_FEW_TILES != 2u {
-        found.few_tiles = NDF_MAPS_FEW_TILES;
     }
     return found;
 }

@@ -6,14 +6,14 @@ use glam::{DMat2, DVec2, Vec2};
 use glint_bake_core::footprint::Footprint;
 use glint_bake_core::ndf_maps::bake::bake_maps;
 use glint_bake_core::ndf_maps::baked::Material;
-use glint_bake_core::ndf_maps::eval::{EvalSettings, LobeTerm, matrix};
+use glint_bake_core::ndf_maps::eval::{EvalSettings, matrix};
 use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, StochasticOptions, TransformRanges};
 use glint_bake_core::ndf_maps::placement::place;
 use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
 use glint_bake_core::ndf_maps::sections::{from_pack, layer_sections, to_sections};
 use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
-use glint_formats::ndf_maps::{DensityStorage, LayeredMaterial, MaterialUniform, UNIFORM_BYTES};
+use glint_formats::ndf_maps::{LayeredMaterial, MaterialUniform, UNIFORM_BYTES};
 use glint_formats::{Codec, Limits, Pack, PackBuilder, Wrap};
 use glint_shaders::assert_same_layout;
 use glint_shaders::layout::layout;
@@ -29,13 +29,10 @@ struct Query {
     mean: Vec2,
     s: Vec2,
     covariance: [f32; 3],
-    tile_sigmas: f32,
-    lobe_sigmas: f32,
-    max_terms: u32,
-    splits: u32,
+    max_ratio: f32,
     reach: f32,
     layer: u32,
-    probes: u32,
+    unused: [u32; 2],
 }
 
 /// `NdfMapsAnswer`.
@@ -55,13 +52,10 @@ impl Query {
             mean: footprint.mean.as_vec2(),
             s,
             covariance: [c.x_axis.x as f32, c.x_axis.y as f32, c.y_axis.y as f32],
-            tile_sigmas: settings.tile_sigmas,
-            lobe_sigmas: settings.lobe_sigmas,
-            max_terms: settings.max_terms,
-            splits: settings.splits,
+            max_ratio: settings.max_ratio,
             reach: settings.reach,
             layer,
-            probes: settings.probes,
+            unused: [0; 2],
         }
     }
 
@@ -73,20 +67,13 @@ impl Query {
     }
 
     fn settings(&self) -> EvalSettings {
-        let Query { tile_sigmas, lobe_sigmas, max_terms, splits, reach, probes, .. } = *self;
-        EvalSettings { tile_sigmas, lobe_sigmas, max_terms, splits, reach, probes }
+        let Query { max_ratio, reach, .. } = *self;
+        EvalSettings { max_ratio, reach }
     }
 }
 
-const PICTURE: EvalSettings =
-    EvalSettings { tile_sigmas: 4.0, lobe_sigmas: 1.0, max_terms: 32, splits: 0, reach: 2.0, probes: 2 };
-const SETTINGS: [EvalSettings; 5] = [
-    PICTURE,
-    EvalSettings { tile_sigmas: 4.0, lobe_sigmas: 1.0, max_terms: 32, splits: 0, reach: 2.0, probes: 0 },
-    EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 1.0, max_terms: 64, splits: 0, reach: 2.8, probes: 0 },
-    EvalSettings { tile_sigmas: 1.0, lobe_sigmas: 0.75, max_terms: 128, splits: 1, reach: 2.8, probes: 0 },
-    EvalSettings { tile_sigmas: 0.5, lobe_sigmas: 0.5, max_terms: 512, splits: 2, reach: 2.8, probes: 0 },
-];
+const SETTINGS: [EvalSettings; 3] =
+    [EvalSettings::REAL_TIME, EvalSettings::ACCURATE, EvalSettings { max_ratio: 1.0, reach: 2.0 }];
 
 /// A material with the map it was baked from.
 struct Sample {
@@ -140,8 +127,8 @@ fn map(width: u32, height: u32, wrap: Wrap) -> NormalMap {
     NormalMap { width, height, wrap, projected: (0..width * height).map(normal).collect() }
 }
 
-fn options(storage: DensityStorage, roughness: f64, min_tile: u32) -> NdfMapsOptions {
-    NdfMapsOptions { roughness, max_error: 0.03, storage, min_tile }
+fn options(roughness: f64, finest_window: f64) -> NdfMapsOptions {
+    NdfMapsOptions { roughness, max_error: 0.03, finest_window }
 }
 
 fn tiled(degrees: f64, scale: f64, shear: f64) -> PlacementOptions {
@@ -155,9 +142,8 @@ fn stochastic(palette: u32, cells: u32, spacing: f64, seed: u64) -> PlacementOpt
     PlacementOptions::Stochastic(StochasticOptions { palette, cells, spacing, seed, ..Default::default() })
 }
 
-/// Every storage, placement and wrap, two materials a set of bindings.
+/// Every placement and wrap, two materials a set of bindings.
 fn samples() -> [[Sample; 2]; 4] {
-    use DensityStorage::{F16, PaperF32, SqrtU8};
     let all = TransformRanges {
         rotate_degrees: (0.0, 360.0),
         mirror: true,
@@ -168,20 +154,20 @@ fn samples() -> [[Sample; 2]; 4] {
     let varied = StochasticOptions { ranges: all, palette: 7, cells: 4, spacing: 0.6, seed: 5 };
     [
         [
-            Sample::new(map(16, 16, Wrap::Repeat), options(SqrtU8, 0.05, 2), tiled(0.0, 1.0, 0.0)),
-            Sample::new(map(13, 7, Wrap::Clamp), options(F16, 0.04, 2), tiled(31.0, 1.7, 0.2)),
+            Sample::new(map(16, 16, Wrap::Repeat), options(0.05, 0.7), tiled(0.0, 1.0, 0.0)),
+            Sample::new(map(13, 7, Wrap::Clamp), options(0.04, 0.7), tiled(31.0, 1.7, 0.2)),
         ],
         [
-            Sample::new(map(16, 16, Wrap::Repeat), options(SqrtU8, 0.05, 2), stochastic(16, 8, 1.0, 1)),
-            Sample::new(map(12, 16, Wrap::Clamp), options(F16, 0.06, 2), PlacementOptions::Stochastic(varied)),
+            Sample::new(map(16, 16, Wrap::Repeat), options(0.05, 0.7), stochastic(16, 8, 1.0, 1)),
+            Sample::new(map(12, 16, Wrap::Clamp), options(0.06, 0.7), PlacementOptions::Stochastic(varied)),
         ],
         [
-            Sample::new(map(8, 8, Wrap::Repeat), options(PaperF32, 0.06, 2), stochastic(32, 16, 2.0, 9)),
-            Sample::new(map(9, 5, Wrap::Clamp), options(PaperF32, 0.08, 2), tiled(200.0, 0.6, 0.0)),
+            Sample::new(map(8, 8, Wrap::Repeat), options(0.06, 0.7), stochastic(32, 16, 2.0, 9)),
+            Sample::new(map(9, 5, Wrap::Clamp), options(0.08, 0.7), tiled(200.0, 0.6, 0.0)),
         ],
         [
-            Sample::new(map(32, 32, Wrap::Repeat), options(SqrtU8, 0.03, 4), stochastic(1, 2, 0.8, 3)),
-            Sample::new(map(37, 1, Wrap::Repeat), options(F16, 0.05, 2), tiled(0.0, 1.0, 0.0)),
+            Sample::new(map(32, 32, Wrap::Repeat), options(0.03, 2.0), stochastic(1, 2, 0.8, 3)),
+            Sample::new(map(37, 1, Wrap::Repeat), options(0.05, 0.7), tiled(0.0, 1.0, 0.0)),
         ],
     ]
 }
@@ -276,13 +262,12 @@ fn one_place_is_what_the_definition_shows_there() {
         let queries = queries(&mut random(10 + k as u64), layers, 2600);
         for (query, answer) in queries.iter().zip(ask(gpu, layers, &queries)) {
             let sample = layers[query.layer as usize];
-            let (class, local) = references[query.layer as usize].shown_at(query.mean.as_dvec2());
-            let entry = &sample.material.placement.palette[class];
-            let normal = sample.material.maps.normal_and_jacobian(local.as_vec2());
-            let to_local = matrix(entry.normal_to_local);
-            let lobe = LobeTerm::new(normal, 0.0, sample.roughness(), to_local, 1.0, Vec2::ZERO);
+            let shown = references[query.layer as usize].shown_at(query.mean.as_dvec2());
+            let density = |(class, local, part): &(usize, DVec2, f64)| {
+                *part as f32 * sample.material.point(*class as u32, local.as_vec2(), query.s)
+            };
             let unit = std::f32::consts::TAU * sample.roughness().powi(2);
-            densities.push((answer.at_point * unit, lobe.lobe_density(query.s) * unit));
+            densities.push((answer.at_point * unit, shown.iter().map(density).sum::<f32>() * unit));
         }
     }
     compare("NDF maps, one place", densities.into_iter());
@@ -305,7 +290,7 @@ fn the_density_is_the_mean_of_its_places() {
     const NORMALS: usize = 6;
     let Some(gpu) = gpu() else { return };
     let rng = &mut random(20);
-    let accurate = SETTINGS[4];
+    let accurate = SETTINGS[1];
     for pair in &samples()[..2] {
         let layers = [&pair[0], &pair[1]];
         let footprints = [(0.3, 2.0), (3.0, 4.0), (30.0, 1.5)]
@@ -317,7 +302,7 @@ fn the_density_is_the_mean_of_its_places() {
             queries.extend(normals.iter().map(|s| Query::new(footprint, *s, accurate, *layer as u32)));
             for mean in places(rng, footprint, PLACES) {
                 let place = Footprint { mean, covariance: DMat2::ZERO };
-                queries.extend(normals.iter().map(|s| Query::new(&place, *s, PICTURE, *layer as u32)));
+                queries.extend(normals.iter().map(|s| Query::new(&place, *s, SETTINGS[0], *layer as u32)));
             }
         }
         let answers = ask(gpu, layers, &queries);
@@ -351,7 +336,7 @@ fn hard_maps_and_footprints_have_finite_answers() {
     let rng = &mut random(30);
     let mut count = 0;
     for map in maps {
-        let maps = options(DensityStorage::SqrtU8, 0.05, 2);
+        let maps = options(0.05, 0.7);
         let sample = |placement| Sample::new(map.clone(), maps.clone(), placement);
         let pair = [sample(tiled(0.0, 1.0, 0.0)), sample(stochastic(8, 4, 1.0, 2))];
         let mut queries = Vec::new();
@@ -385,8 +370,8 @@ fn a_material_comes_back_from_its_sections() {
         for (name, sample) in ["base", "coat"].into_iter().zip(&pair) {
             let (found, expected) = (from_pack(&pack, name).unwrap(), &sample.material);
             assert_eq!(found.maps.params, expected.maps.params);
-            assert_eq!(found.maps.tiles, expected.maps.tiles);
-            assert_eq!(found.maps.density, expected.maps.density);
+            assert_eq!(found.maps.nodes, expected.maps.nodes);
+            assert_eq!((found.maps.atlas_size, &found.maps.atlas), (expected.maps.atlas_size, &expected.maps.atlas));
             assert_eq!(found.maps.normals, expected.maps.normals);
             assert_eq!(found.placement.params, expected.placement.params);
             assert_eq!(found.placement.palette, expected.placement.palette);
@@ -418,20 +403,19 @@ fn the_uniform_lies_as_the_shader_reads_it() {
         "GlintNdfMaterial",
         MaterialUniform,
         size,
-        wrap,
-        storage,
-        intrinsic_roughness,
+        unused,
         levels,
+        intrinsic_roughness,
+        steps,
+        finest_variance,
         palette,
         cells,
         cell_texels,
         palette_records,
         reach_records,
-        tile_records,
-        blocks,
-        few_tiles,
-        most_texels,
-        layer
+        inv_atlas,
+        layer,
+        most_texels
     );
     let whole = layout(&source, "NdfMapsData").unwrap();
     assert_eq!(whole.members[1], ("records".into(), size_of::<MaterialUniform>() as u32));

@@ -1,0 +1,235 @@
+//! One node's NDF as a table of roots: candidates from coarse to fine, each fitted, quantised and measured.
+//!
+//! The paper samples every tile at 128² over [−1, 1]² (Xing et al. 2024, section 5.2, Eq. 2). Here each node has a box around its own
+//! normals, its density is the integral under its window of one lobe of standard deviation σ_r a normal (not a sum over one lobe a
+//! texel), and the square root of the density is fitted by least squares to what bilinear interpolation will reconstruct, with as few
+//! texels along each axis as the error asked for allows.
+
+use super::fine_grid::FineGrid;
+use super::hats::{Fit, add_scaled, square_integral};
+use multiversion::multiversion;
+use std::ops::Range;
+
+/// Finest and coarsest texel spacing tried, in points of the fine grid.
+const SPACINGS: (usize, usize) = (1, 9);
+/// What is cut off on each side of a table, as a part of the error asked for.
+const CUT_OF_ERROR: f64 = 0.05;
+/// Texels along an axis of a table, and steps between them, at most: eight bits each.
+const MOST: usize = 255;
+
+/// A node's fitted roots, quantised: what the pack holds.
+#[derive(Clone, Debug)]
+pub(super) struct FittedTable {
+    /// Steps from s = (−1, −1) to texel (0, 0).
+    pub origin: [u32; 2],
+    /// Steps between texels.
+    pub spacing: [u32; 2],
+    /// Texels in a row, and rows.
+    pub size: [usize; 2],
+    /// Density that a root of 1 stands for.
+    pub scale: f32,
+    /// Roots in 8 bits, row-major.
+    pub roots: Vec<u8>,
+    /// E₁ against the fine grid.
+    pub error: f64,
+    /// |∫D̂ − 1| over the disk after the scale was set.
+    pub energy: f64,
+}
+
+impl FittedTable {
+    /// Bytes of an atlas that it takes, with the zeros that lie between it and the next.
+    pub fn bytes(&self) -> usize {
+        (self.size[0] + 1) * (self.size[1] + 1)
+    }
+}
+
+/// The part of the fine grid that a table is made for.
+struct Core<'a> {
+    fine: &'a FineGrid,
+    columns: Range<usize>,
+    rows: Range<usize>,
+    /// What lies outside, as a part of all.
+    lost: f64,
+    /// Roots of densities inside, row-major.
+    roots: Vec<f32>,
+}
+
+/// Fits one node at spacings around the one that has the error asked for: candidates to choose from, of which the
+/// first is the most accurate.
+pub(super) fn fit_node(fine: &FineGrid, max_error: f64) -> Vec<FittedTable> {
+    let ([columns, rows], lost) = fine.core(CUT_OF_ERROR * max_error);
+    let lines = rows.clone().flat_map(|j| &fine.density[j * fine.width..][columns.clone()]);
+    let roots = lines.map(|v| v.max(0.0).sqrt()).collect();
+    let core = Core { fine, columns, rows, lost, roots };
+    let mut candidates = Candidates { lines: LineFits::new(&core), tried: Vec::new() };
+    // The finest spacing that eight bits hold.
+    let longest = core.columns.len().max(core.rows.len());
+    let finest = (SPACINGS.0..=SPACINGS.1).find(|k| (longest - 1).div_ceil(*k) < MOST).unwrap_or(SPACINGS.1);
+    let coarsest = SPACINGS.1.min(MOST / fine.step as usize).max(finest);
+    // Errors shrink with the spacing: bisect for the coarsest that both axes may have.
+    let (mut low, mut high) = (finest, coarsest);
+    while low < high {
+        let middle = (low + high).div_ceil(2);
+        if candidates.error([middle, middle]) <= max_error {
+            low = middle;
+        } else {
+            high = middle - 1;
+        }
+    }
+    // A streak is smooth along its length and needs fewer texels there, so both axes vary on their own around it.
+    let around = |d: i64| (low as i64 + d).clamp(finest as i64, coarsest as i64) as usize;
+    for (dx, dy) in [(-1, 0), (0, -1), (0, 0), (1, 0), (0, 1), (1, 1), (2, 0), (0, 2)] {
+        candidates.error([around(dx), around(dy)]);
+    }
+    let mut tables: Vec<FittedTable> = candidates.tried.into_iter().map(|(_, table)| table).collect();
+    tables.sort_by(|a, b| a.error.total_cmp(&b.error));
+    tables
+}
+
+/// Fits of one node, each made once.
+struct Candidates<'a> {
+    lines: LineFits<'a>,
+    tried: Vec<([usize; 2], FittedTable)>,
+}
+
+impl Candidates<'_> {
+    /// Error of the fit with texels `spacing` points apart.
+    fn error(&mut self, spacing: [usize; 2]) -> f64 {
+        if let Some((_, table)) = self.tried.iter().find(|(tried, _)| *tried == spacing) {
+            return table.error;
+        }
+        let table = fit_hats(&mut self.lines, spacing);
+        let error = table.error;
+        self.tried.push((spacing, table));
+        error
+    }
+}
+
+/// The core's columns fitted at each spacing, transposed (element (j, i) at i · height + j); made once a spacing.
+struct LineFits<'a> {
+    core: &'a Core<'a>,
+    by_spacing: Vec<Option<Vec<f32>>>,
+}
+
+impl LineFits<'_> {
+    fn new<'a>(core: &'a Core<'a>) -> LineFits<'a> {
+        LineFits { core, by_spacing: vec![None; SPACINGS.1 + 1] }
+    }
+
+    fn get(&mut self, spacing: usize) -> &[f32] {
+        let core = self.core;
+        self.by_spacing[spacing].get_or_insert_with(|| {
+            let fit = Fit::new(core.rows.len(), spacing);
+            transposed(&fit.solve(&core.roots, core.columns.len()), core.columns.len())
+        })
+    }
+}
+
+fn transposed(values: &[f32], width: usize) -> Vec<f32> {
+    let height = values.len() / width;
+    let mut out = vec![0.0; values.len()];
+    for (j, row) in values.chunks_exact(width).enumerate() {
+        for (i, v) in row.iter().enumerate() {
+            out[i * height + j] = *v;
+        }
+    }
+    out
+}
+
+/// Least-squares fit of roots with texels `spacing` points apart, quantised, with its error.
+fn fit_hats(lines: &mut LineFits, spacing: [usize; 2]) -> FittedTable {
+    let core = lines.core;
+    let across = Fit::new(core.columns.len(), spacing[0]);
+    let columns = lines.get(spacing[1]);
+    let size = [across.nodes(), columns.len() / core.columns.len()];
+    let mut values = transposed(&across.solve(columns, size[1]), size[1]);
+    let roots = quantise(&mut values);
+    let fine = core.fine;
+    let at = [core.columns.start, core.rows.start];
+    let origin = [0, 1].map(|axis| fine.origin[axis] + fine.spacing * at[axis] as f64);
+    let distance = spacing.map(|spacing| fine.spacing * spacing as f64);
+    // Normalised after rounding, so that what is decoded integrates to one.
+    let integral = square_integral(&values, size[0], size[1], origin, distance);
+    let scale = (1.0 / integral.max(f64::MIN_POSITIVE)) as f32;
+    FittedTable {
+        origin: [0, 1].map(|axis| fine.first[axis] + fine.step * at[axis] as u32),
+        spacing: spacing.map(|spacing| fine.step * spacing as u32),
+        size,
+        scale,
+        error: error(core, &values, size[0], spacing, scale),
+        roots,
+        energy: (f64::from(scale) * integral - 1.0).abs(),
+    }
+}
+
+/// Roots in 8 bits relative to the largest, which replace the values by what will be decoded.
+fn quantise(values: &mut [f32]) -> Vec<u8> {
+    let peak = values.iter().fold(f32::MIN_POSITIVE, |a, b| a.max(*b));
+    values
+        .iter_mut()
+        .map(|v| {
+            let byte = ((*v / peak).max(0.0) * 255.0).round() as u8;
+            *v = f32::from(byte) / 255.0;
+            byte
+        })
+        .collect()
+}
+
+/// E₁ of decoded roots over the fine points inside the disk.
+#[multiversion(targets("x86_64+avx2", "x86_64+avx"))]
+fn error(core: &Core<'_>, roots: &[f32], width: usize, spacing: [usize; 2], scale: f32) -> f64 {
+    // Spread every row of roots over the fine columns, then blend two such rows for every fine row.
+    let count = core.columns.len();
+    let part = |k: usize, spacing: usize| (k / spacing, (k % spacing) as f32 / spacing as f32);
+    let mut spread = vec![0.0f32; roots.len() / width * count];
+    let mut padded = vec![0.0f32; width + 1];
+    for (row, spread) in roots.chunks_exact(width).zip(spread.chunks_exact_mut(count)) {
+        padded[..width].copy_from_slice(row);
+        for (i, out) in spread.iter_mut().enumerate() {
+            let (at, f) = part(i, spacing[0]);
+            *out = padded[at] + (padded[at + 1] - padded[at]) * f;
+        }
+    }
+    let mut decoded = vec![0.0f32; count];
+    let (mut difference, mut total) = (0.0f64, 0.0f64);
+    for j in 0..core.rows.len() {
+        let Some(inside) = core.fine.columns_inside(core.rows.start + j) else { continue };
+        let inside = inside.start.max(core.columns.start)..inside.end.min(core.columns.end);
+        if inside.is_empty() {
+            continue;
+        }
+        let (at, f) = part(j, spacing[1]);
+        decoded.fill(0.0);
+        for (row, weight) in [(at, 1.0 - f), (at + 1, f)] {
+            if let Some(source) = spread.get(row * count..(row + 1) * count) {
+                add_scaled(&mut decoded, source, weight);
+            }
+        }
+        decoded.iter_mut().for_each(|v| *v = *v * *v * scale);
+        let exact = &core.fine.density[(core.rows.start + j) * core.fine.width..][inside.clone()];
+        let decoded = &decoded[inside.start - core.columns.start..inside.end - core.columns.start];
+        let (d, t) = difference_and_total(decoded, exact);
+        difference += d as f64;
+        total += t as f64;
+    }
+    let all = total / (1.0 - core.lost).max(f64::MIN_POSITIVE);
+    (difference + all - total) / all.max(f64::MIN_POSITIVE)
+}
+
+/// Σ|a − b| and Σb, in eight lanes; inlined, so that it has the vectors of its caller.
+#[inline(always)]
+fn difference_and_total(a: &[f32], b: &[f32]) -> (f32, f32) {
+    let (mut differences, mut totals) = ([0.0f32; 8], [0.0f32; 8]);
+    let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));
+    let mut tail = (0.0f32, 0.0f32);
+    for (x, y) in a8.remainder().iter().zip(b8.remainder()) {
+        tail = (tail.0 + (x - y).abs(), tail.1 + y);
+    }
+    for (x, y) in a8.zip(b8) {
+        for k in 0..8 {
+            differences[k] += (x[k] - y[k]).abs();
+            totals[k] += y[k];
+        }
+    }
+    (differences.iter().sum::<f32>() + tail.0, totals.iter().sum::<f32>() + tail.1)
+}
