@@ -147,14 +147,14 @@ fn sizes_stay_within_the_byte_limits() {
     assert!(size("tiny/brushed_16x16.png", None) <= 512 * 1024);
     for (name, x, y) in CROPS_16 {
         let bytes = size(name, Some((x, y, 16)));
-        assert!(bytes <= 2 << 20, "{name}: {bytes} bytes for 16²");
+        assert!(bytes <= 1280 << 10, "{name}: {bytes} bytes for 16²");
     }
     for name in ["tiny/scratches_32x32.png", "tiny/wicker_box16_32x32.png"] {
         assert!(size(name, None) <= 1024 * 1024, "{name}");
     }
     for (name, x, y) in CROPS_32 {
         let bytes = size(name, Some((x, y, 32)));
-        assert!(bytes <= 8 << 20, "{name}: {bytes} bytes for 32²");
+        assert!(bytes <= 3 << 20, "{name}: {bytes} bytes for 32²");
     }
 }
 
@@ -205,8 +205,9 @@ fn a_stochastic_surface_agrees_with_its_explicit_map() {
     let options = PlacementOptions::Stochastic(StochasticOptions::default());
     for name in ["tiny/brushed_16x16.png", "tiny/flakes_8x8.png"] {
         let e1 = surface_error(&real_maps::load(&data, name, None), &options, &SIZES, 2, EvalSettings::ACCURATE);
-        // From a cell on, all is seen as the whole example under each transform: a third off at σ = 16.
-        assert!(e1 <= 0.18, "{name}: mean E₁ {e1}");
+        // From about a cell on, all is seen as the whole example under each transform: brushed is a third off at σ = 16, and more
+        // under a footprint of 8 by 32 texels.
+        assert!(e1 <= 0.165, "{name}: mean E₁ {e1}");
     }
 }
 

@@ -143,7 +143,7 @@ mod with_viewer {
         table.row(
             "NDF maps | a node: one 16-byte load of its place, one gather of four texels; three nodes a probe, of two levels in one \
              probe of a footprint; random placement: one to four examples a probe, and for each one 16-byte load of its owner and two \
-             of its transform; a patch of the map below the finest windows: four 4-byte loads of normals; one word of a mask outside \
+             of its transform; a patch of the map below the finest windows: one 16-byte load of its four normals; one word of a mask outside \
              the highlight | a node: a bilinear blend; a patch: exponentials and error functions",
         );
         table.row(
