@@ -81,6 +81,10 @@ mod support;
 mod surface;
 #[path = "cli/textures.rs"]
 mod textures;
+#[path = "cli/textures_alpha.rs"]
+mod textures_alpha;
+#[path = "cli/textures_flags.rs"]
+mod textures_flags;
 #[path = "cli/textures_gltf.rs"]
 mod textures_gltf;
 #[path = "cli/textures_project.rs"]

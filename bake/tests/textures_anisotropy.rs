@@ -127,6 +127,11 @@ fn axes_of_the_surface_stretch_the_highlight_of_normals_that_lean() {
     let [surface, normal] = BOTH.map(|axes| baked(&map, &roughness, Some(axes)).levels[1].anisotropies[0]);
     assert!(normal.strength == 0.0, "{normal:?}");
     assert!(surface.strength > 0.1 && surface.direction[0].abs() < 1e-3, "{surface:?}");
+    // Which the bake knows: without anisotropy there is no error.
+    for [with, without] in baked(&map, &roughness, Some(Axes::Surface)).against_round {
+        assert!(with > 0.3 && without < 1e-3, "{with} {without}");
+    }
+    assert!(baked(&map, &roughness, Some(Axes::Normal)).against_round.is_empty());
 }
 
 #[test]
@@ -183,6 +188,11 @@ fn the_fit_comes_near_the_best_of_a_scan_and_beats_round_lobes() {
                 };
                 (0..192).map(error).fold(f64::INFINITY, f64::min)
             };
+            // The fit's own samples are few; what they say of one against the other is what counts.
+            if let Some([with, without]) = stretched.against_round.get(mip as usize - 1) {
+                let (found, exact) = (f64::from(with / without), ours / round.error());
+                assert!((found - exact).abs() < 0.1, "{perceptual} mip {mip}: {found} {exact}");
+            }
             let best = all.iter().map(scan).sum::<f64>() / all.len() as f64;
             assert!(ours < 1.1 * best + 0.004, "{perceptual} mip {mip} {axes:?}: {ours}, the best of the scan {best}");
             assert!(ours < 0.8 * round.error(), "{perceptual} mip {mip} {axes:?}: {ours}, round {}", round.error());

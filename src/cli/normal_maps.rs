@@ -143,6 +143,7 @@ impl InputFlags {
             colour_space: self.colour_space.or_linear(self.assume_linear),
             layer: self.layer.clone(),
             max_memory,
+            ..InputOptions::default()
         }
     }
 

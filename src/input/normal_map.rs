@@ -11,9 +11,9 @@ use super::error::InputError;
 use super::format::{self, Format};
 use super::guard::guarded;
 use super::limits::{digest, from_bake, read};
-use super::options::{Channels, Crop, InputOptions};
+use super::options::{AlphaUse, Channels, Crop, InputOptions};
 use super::pixels::Pixels;
-use super::{exr, meaning, raster, tiff_file};
+use super::{exr, meaning, one_channel, raster, tiff_file};
 use glint_bake_core::normal_map::{GreenAxis, NormalMap, NormalOptions, NormalReport};
 use glint_formats::provenance::InputDigest;
 use image::ImageFormat;
@@ -33,6 +33,8 @@ pub struct LoadedMap {
     pub digest: InputDigest,
     /// What the user should know, one sentence each.
     pub warnings: Vec<String>,
+    /// Alpha, one value a texel, 0 to 1, where it was asked for.
+    pub alpha: Option<Vec<f32>>,
     /// The convention that the file was read with, for provenance.
     pub convention: String,
 }
@@ -54,6 +56,12 @@ pub fn load_normal_map(path: &Path, options: &InputOptions) -> Result<LoadedMap,
 pub fn normal_map_of(path: &Path, bytes: &[u8], options: &InputOptions) -> Result<LoadedMap, InputError> {
     let (pixels, mut warnings) = guarded(path, || decode(path, bytes, options))?;
     let orientation = pixels.stored.orientation;
+    let alpha = match options.alpha {
+        AlphaUse::Taken { flag } if flag.is_some() || pixels.values.has_alpha() => {
+            Some(one_channel::alpha_of(path, &pixels, flag.unwrap_or_default(), options.crop)?)
+        }
+        AlphaUse::Taken { .. } | AlphaUse::Ignored { .. } | AlphaUse::Dropped => None,
+    };
     // Vectors that may have to be turned are looked at as a whole.
     let (part, rest) = if orientation.is_as_stored() { (options.crop, None) } else { (None, options.crop) };
     let raw = meaning::raw_normals(path, pixels, part, options, &mut warnings)?;
@@ -71,7 +79,8 @@ pub fn normal_map_of(path: &Path, bytes: &[u8], options: &InputOptions) -> Resul
         NormalOptions { wrap: options.wrap, y: if options.height.is_some() { GreenAxis::Up } else { options.y } };
     let (map, report) = NormalMap::from_vectors(&raw, &normal_options).map_err(|e| from_bake(path, e))?;
     warn_of(&report, options, &mut warnings);
-    Ok(LoadedMap { map, report, digest: digest(path, bytes, &mut warnings), warnings, convention: convention(options) })
+    let digest = digest(path, bytes, &mut warnings);
+    Ok(LoadedMap { map, report, digest, warnings, alpha, convention: convention(options) })
 }
 
 /// Pixels of any format as they are shown, and the notes of reading them.

@@ -29,6 +29,11 @@ pub enum Channels {
 }
 
 impl Channels {
+    /// Whether alpha is a part of the normal.
+    pub fn uses_alpha(self) -> bool {
+        self.two().is_some_and(|columns| columns.contains(&3))
+    }
+
     /// Columns of a texel (red, green, blue, alpha) that hold x and y, where z is computed.
     pub(super) fn two(self) -> Option<[usize; 2]> {
         match self {
@@ -53,6 +58,29 @@ pub enum ColourSpace {
     Linear,
     /// By the sRGB curve, whatever the file claims.
     Srgb,
+}
+
+/// What becomes of alpha that is no part of the normal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AlphaUse {
+    /// Nothing. Where it holds something that is noted, with the flag that says what to do with it, where there is one.
+    Ignored {
+        /// As it is typed.
+        flag: Option<&'static str>,
+    },
+    /// Nothing, as was asked for.
+    Dropped,
+    /// It is given beside the map. It has to be there where a flag asks for it.
+    Taken {
+        /// As it is typed.
+        flag: Option<&'static str>,
+    },
+}
+
+impl Default for AlphaUse {
+    fn default() -> AlphaUse {
+        AlphaUse::Ignored { flag: None }
+    }
 }
 
 /// A rectangle of texels, from the top left corner.
@@ -85,6 +113,8 @@ pub struct InputOptions {
     pub colour_space: ColourSpace,
     /// The layer of an EXR file to read; empty for the unnamed one. When not given, the layer that fits is found.
     pub layer: Option<String>,
+    /// What becomes of alpha.
+    pub alpha: AlphaUse,
     /// Most bytes to hold for this file while loading.
     pub max_memory: u64,
 }
@@ -112,6 +142,7 @@ impl Default for InputOptions {
             crop: None,
             colour_space: ColourSpace::Auto,
             layer: None,
+            alpha: AlphaUse::default(),
             max_memory: DEFAULT_MAX_MEMORY,
         }
     }

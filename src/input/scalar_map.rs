@@ -5,15 +5,13 @@ use super::error::InputError;
 use super::guard::guarded;
 use super::limits::{digest, read};
 use super::normal_map::decode;
-use super::options::{Crop, InputOptions};
-use super::pixels::{Pixels, Values};
+use super::one_channel::{checked, one_channel};
+use super::options::{AlphaUse, Crop, InputOptions};
+use super::pixels::Pixels;
 use glint_bake_core::textures::levels::shares;
 use glint_formats::Wrap;
 use glint_formats::provenance::InputDigest;
 use std::path::Path;
-
-/// Difference between colours of a grey image: JPEG rounds each channel on its own, so allow two 8-bit steps.
-const GREY: f32 = 2.25 / 255.0;
 
 /// A map with where it came from and what was noticed.
 #[derive(Clone, Debug)]
@@ -59,66 +57,14 @@ pub fn scalar_map_of(
     crop: Option<Crop>,
     max_memory: u64,
 ) -> Result<LoadedScalar, InputError> {
-    let options = InputOptions { max_memory, ..InputOptions::default() };
+    let alpha = if channel == Some(3) { AlphaUse::Taken { flag: None } } else { AlphaUse::default() };
+    let options = InputOptions { max_memory, alpha, ..InputOptions::default() };
     let (pixels, mut warnings) = guarded(path, || decode(path, bytes, &options))?;
     let Pixels { width, height, values, .. } = pixels;
-    let mut numbers = one_channel(path, width, &values, channel, flag)?;
+    let numbers = one_channel(path, width, &values, channel, flag)?;
     drop(values);
-    let (mut size, mut from) = ((width, height), (0, 0));
-    if let Some(crop) = crop {
-        numbers = cropped(path, numbers, size, crop)?;
-        (size, from) = ((crop.w, crop.h), (crop.x, crop.y));
-    }
-    if let Some(at) = numbers.iter().position(|value| !(0.0..=1.0).contains(value)) {
-        let (x, y) = (at as u32 % size.0 + from.0, at as u32 / size.0 + from.1);
-        return Err(InputError::bad(path, format!("texel ({x}, {y}) is {}; expected 0 to 1", numbers[at])));
-    }
-    let digest = digest(path, bytes, &mut warnings);
-    Ok(LoadedScalar { width: size.0, height: size.1, values: numbers, digest, warnings })
-}
-
-fn one_channel(
-    path: &Path,
-    width: u32,
-    values: &Values,
-    channel: Option<usize>,
-    flag: &str,
-) -> Result<Vec<f32>, InputError> {
-    match channel {
-        Some(3) if !values.has_alpha() => {
-            Err(InputError::bad(path, format!("{flag} asks for alpha, and the image has none; give another channel")))
-        }
-        Some(channel) => Ok(values.texels().map(|texel| texel[channel]).collect()),
-        None => {
-            let differ = |a: f32, b: f32| (a - b).abs() > GREY;
-            match values.texels().position(|c| differ(c[0], c[1]) || differ(c[1], c[2])) {
-                None => Ok(values.texels().map(|texel| texel[1]).collect()),
-                Some(at) => Err(InputError::bad(
-                    path,
-                    format!(
-                        "expected a grey image, found colours at texel ({}, {}); say which channel to use with {flag} r, g, b or a",
-                        at % width as usize,
-                        at / width as usize
-                    ),
-                )),
-            }
-        }
-    }
-}
-
-fn cropped(path: &Path, values: Vec<f32>, (width, height): (u32, u32), crop: Crop) -> Result<Vec<f32>, InputError> {
-    let inside = |from: u32, count: u32, whole: u32| u64::from(from) + u64::from(count) <= u64::from(whole);
-    if !inside(crop.x, crop.w, width) || !inside(crop.y, crop.h, height) {
-        return Err(InputError::bad(
-            path,
-            format!(
-                "the crop of {}×{} at ({}, {}) leaves the {width}×{height} map; with --crop all maps have the normal map's size",
-                crop.w, crop.h, crop.x, crop.y
-            ),
-        ));
-    }
-    let rows = values.chunks_exact(width as usize).skip(crop.y as usize).take(crop.h as usize);
-    Ok(rows.flat_map(|row| row[crop.x as usize..(crop.x + crop.w) as usize].iter().copied()).collect())
+    let (values, (width, height)) = checked(path, "texel", numbers, (width, height), crop)?;
+    Ok(LoadedScalar { width, height, values, digest: digest(path, bytes, &mut warnings), warnings })
 }
 
 impl LoadedScalar {

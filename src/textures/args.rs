@@ -8,6 +8,7 @@ use super::tile_names;
 use crate::cli::normal_maps::{InputFlags, NormalY, check_name, name_of_file};
 use crate::cli::values;
 use crate::exit::Failure;
+use crate::input::{AlphaUse, Channels};
 use clap::ValueEnum;
 use std::path::{Path, PathBuf};
 
@@ -40,17 +41,20 @@ pub struct Args {
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,
 
-    /// Roughness of the material, as --roughness-is says, the same everywhere
-    #[arg(long, value_name = "VALUE", default_value = "0.5", value_parser = unit, conflicts_with = "roughness_map")]
-    #[arg(help_heading = "Material")]
-    pub roughness: f32,
+    /// Roughness of the material, as --roughness-is says, the same everywhere [default: 0.5]
+    #[arg(long, value_name = "VALUE", value_parser = unit, conflicts_with = "roughness_map")]
+    #[arg(allow_negative_numbers = true, help_heading = "Material")]
+    pub roughness: Option<f32>,
     /// Roughness of the material, a map
     #[arg(long, value_name = "MAP", help_heading = "Material")]
     pub roughness_map: Option<PathBuf>,
     /// Channel of --roughness-map to use [default: the only one]
     #[arg(long, value_name = "CHANNEL", requires = "roughness_map", help_heading = "Material")]
     pub roughness_channel: Option<ChannelArg>,
-    /// What --roughness and --roughness-map hold
+    /// What alpha of the normal map is: nothing, roughness, or opacity or height to keep [default: left out, which is said]
+    #[arg(long, value_name = "USE", help_heading = "Material")]
+    pub normal_alpha: Option<NormalAlpha>,
+    /// What --roughness, --roughness-map and --normal-alpha roughness hold
     #[arg(long, value_name = "KIND", default_value = "perceptual", help_heading = "Material")]
     pub roughness_is: Stored,
     /// Occlusion, a map [default: 1 everywhere]
@@ -130,6 +134,20 @@ pub struct Args {
     pub json: bool,
 }
 
+/// What messages call the flag of alpha.
+const ALPHA_FLAG: &str = "--normal-alpha";
+
+/// What alpha of a normal map is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum NormalAlpha {
+    /// nothing that is needed
+    Drop,
+    /// opacity, height or a mask: its averages are alpha of the normals' mips, and blocks of normals are BC7
+    Keep,
+    /// the material's roughness
+    Roughness,
+}
+
 /// A column of a texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 #[allow(missing_docs)] // The flag's help says it.
@@ -162,6 +180,7 @@ impl Args {
     /// Usage.
     pub fn check(&self) -> Result<(), Failure> {
         self.gltf.check()?;
+        self.check_alpha()?;
         if self.gltf.gltf.is_none() {
             self.layout()?;
         }
@@ -176,6 +195,43 @@ impl Args {
             )));
         }
         Ok(())
+    }
+
+    /// Refuses alpha that is something else already, or has no place to go.
+    fn check_alpha(&self) -> Result<(), Failure> {
+        let Some(alpha @ (NormalAlpha::Keep | NormalAlpha::Roughness)) = self.normal_alpha else { return Ok(()) };
+        let reason = if self.input.channels.is_some_and(|channels| Channels::from(channels).uses_alpha()) {
+            "--channels says that alpha is x or y of the normals; leave one of them out"
+        } else if alpha == NormalAlpha::Keep && self.two_channel {
+            "--two-channel leaves no alpha to keep it in; leave one of them out"
+        } else if alpha == NormalAlpha::Roughness && self.gltf.gltf.is_some() {
+            "materials of a glTF file have roughness of their own; expected drop or keep"
+        } else if alpha == NormalAlpha::Roughness && (self.roughness.is_some() || self.roughness_map.is_some()) {
+            "is the roughness already; leave out --roughness and --roughness-map"
+        } else {
+            return Ok(());
+        };
+        Err(Failure::usage(format!("{ALPHA_FLAG} {}: {reason}", values::name_of(&alpha))))
+    }
+
+    /// What the reader of the normal map does with alpha.
+    pub fn alpha_use(&self) -> AlphaUse {
+        match self.normal_alpha {
+            None => AlphaUse::Ignored { flag: Some(ALPHA_FLAG) },
+            Some(NormalAlpha::Drop) => AlphaUse::Dropped,
+            // Of a file's materials some may have none.
+            Some(_) => AlphaUse::Taken { flag: Some(ALPHA_FLAG).filter(|_| self.gltf.gltf.is_none()) },
+        }
+    }
+
+    /// Whether the normals' texture has alpha.
+    pub fn keeps_alpha(&self) -> bool {
+        self.normal_alpha == Some(NormalAlpha::Keep)
+    }
+
+    /// Channels of the normals' texture: BC5 has two, and no alpha.
+    pub fn normal_channels(&self) -> usize {
+        if self.two_channel || (self.blocks && !self.keeps_alpha()) { 2 } else { 4 }
     }
 
     /// The same for a table of a project, each of which is one map or one file.
@@ -194,6 +250,11 @@ impl Args {
     /// Files that the glTF file has beside it, as far as it can be read.
     pub fn files_beside(&self) -> Vec<PathBuf> {
         self.gltf.gltf.as_deref().map_or(Vec::new(), files::beside)
+    }
+
+    /// The constant roughness.
+    pub fn roughness_value(&self) -> f32 {
+        self.roughness.unwrap_or(0.5)
     }
 
     /// What names of files begin with.

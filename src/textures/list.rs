@@ -1,6 +1,6 @@
 //! The JSON beside the textures: what each file is, and where all of them come from.
 
-use super::args::Args;
+use super::args::{Args, NormalAlpha};
 use super::material::Material;
 use crate::cli::OptionList;
 use crate::cli::normal_maps::NormalY;
@@ -71,6 +71,11 @@ impl List {
         }
     }
 
+    /// Adds something that was noticed.
+    pub fn note(&mut self, note: String) {
+        self.notes.push(note);
+    }
+
     /// Adds a file.
     pub fn add(&mut self, file: String, bytes: &[u8]) {
         let xxh3_128 = InputDigest::of(&file, bytes).xxh3_128;
@@ -88,8 +93,11 @@ impl List {
 /// Options that the files depend on.
 fn options(args: &Args) -> OptionList {
     let mut options = OptionList::default();
-    if args.roughness_map.is_none() {
-        options.push("roughness", args.roughness);
+    if let Some(alpha) = &args.normal_alpha {
+        options.push_choice("normal-alpha", alpha);
+    }
+    if args.roughness_map.is_none() && args.normal_alpha != Some(NormalAlpha::Roughness) {
+        options.push("roughness", args.roughness_value());
     }
     options.push_choice("roughness-is", &args.roughness_is);
     let channels = [

@@ -20,6 +20,8 @@ pub struct Material {
     pub occlusion: Option<Vec<f32>>,
     /// One value a texel; 1 everywhere without.
     pub metallic: Option<Vec<f32>>,
+    /// Alpha of the normals, one value a texel; 1 everywhere without.
+    pub alpha: Option<Vec<f32>>,
     /// Digests of the files that were read.
     pub digests: Vec<InputDigest>,
     /// What was noticed.
@@ -46,15 +48,20 @@ impl Averaged<'_> {
 impl Material {
     /// A material without other maps.
     pub fn constant(roughness: Roughness) -> Material {
-        Material { roughness, occlusion: None, metallic: None, digests: Vec::new(), warnings: Vec::new() }
+        Material { roughness, occlusion: None, metallic: None, alpha: None, digests: Vec::new(), warnings: Vec::new() }
     }
 
-    /// Loads what the flags name.
+    /// Loads what the flags name. `alpha` is that of the normal map, where it was asked for.
     ///
     /// # Errors
     /// Those of [`load_scalar_map`].
-    pub fn load(args: &Args, map: &NormalMap, terminal: Terminal) -> Result<Material, Failure> {
-        let roughness = perceptual(args.roughness_is, args.roughness);
+    pub fn load(
+        args: &Args,
+        map: &NormalMap,
+        alpha: Option<Vec<f32>>,
+        terminal: Terminal,
+    ) -> Result<Material, Failure> {
+        let roughness = perceptual(args.roughness_is, args.roughness_value());
         let mut material = Material::constant(Roughness::Constant(roughness));
         let mut load =
             |path: &Path, channel: Option<super::args::ChannelArg>, flag: &str| -> Result<Vec<f32>, Failure> {
@@ -68,9 +75,10 @@ impl Material {
                 material.digests.push(digest);
                 Ok(values)
             };
+        let (kept, of_alpha) = if args.keeps_alpha() { (alpha, None) } else { (None, alpha) };
         let roughness = match &args.roughness_map {
             Some(path) => Some(load(path, args.roughness_channel, "--roughness-channel")?),
-            None => None,
+            None => of_alpha,
         };
         let occlusion = args.occlusion.as_ref().map(|path| load(path, args.occlusion_channel, "--occlusion-channel"));
         let occlusion = occlusion.transpose()?;
@@ -80,7 +88,7 @@ impl Material {
             values.iter_mut().for_each(|value| *value = perceptual(args.roughness_is, *value));
             material.roughness = Roughness::Map(values);
         }
-        Ok(Material { occlusion, metallic, ..material })
+        Ok(Material { occlusion, metallic, alpha: kept, ..material })
     }
 
     /// Averages of a map over the texels of every level.

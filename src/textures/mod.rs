@@ -5,6 +5,7 @@ mod encode;
 mod files;
 mod gltf;
 mod gltf_flags;
+mod leaning;
 mod list;
 mod material;
 mod target;
@@ -19,7 +20,7 @@ pub use files::files_of;
 use crate::cli::{Terminal, on_threads};
 use crate::depfile;
 use crate::exit::{Exit, Failure};
-use crate::input::load_normal_map;
+use crate::input::{InputOptions, load_normal_map};
 use crate::output;
 use crate::progress::Stages;
 use crate::reading;
@@ -63,11 +64,15 @@ fn bake(map: &Path, args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let depends: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
     let rule = args.depfile.as_ref().map(|_| depfile::rule(last, &depends)).transpose()?;
 
-    let loaded = load_normal_map(map, &args.input.options(args.max_memory))?;
+    let input = InputOptions { alpha: args.alpha_use(), ..args.input.options(args.max_memory) };
+    let mut loaded = load_normal_map(map, &input)?;
+    if args.blocks && args.keeps_alpha() {
+        loaded.warnings.push("normals with alpha are in BC7 instead of BC5, which has none".into());
+    }
     for warning in &loaded.warnings {
         terminal.warn(&format!("{}: {warning}", map.display()));
     }
-    let material = Material::load(args, &loaded.map, terminal)?;
+    let material = Material::load(args, &loaded.map, loaded.alpha.take(), terminal)?;
     let size = (loaded.map.width, loaded.map.height);
     let options = TexturesOptions { max_memory: args.max_memory, anisotropy: args.anisotropy.map(AxesArg::axes) };
     options.check(&loaded.map).map_err(|e| Failure::bake(map, &e))?;
@@ -104,6 +109,10 @@ fn bake(map: &Path, args: &Args, terminal: Terminal) -> Result<(), Failure> {
         textures::bake(&loaded.map, &material.roughness, &options, &stages).map_err(|e| Failure::bake(map, &e))?;
     let texels = Texels::new(&loaded.map, &material, &baked.levels, args.target);
     let mut list = List::new(args, &loaded, &material);
+    if let Some(warning) = leaning::warning(&baked.against_round) {
+        terminal.warn(&format!("{}: {warning}", map.display()));
+        list.note(warning);
+    }
     let (down, stored) = (args.green_down(), args.stored());
     for texture in &wanted {
         let bytes = match texture.channels {

@@ -13,6 +13,7 @@ pub struct Texels<'a> {
     target: Target,
     occlusion: Averaged<'a>,
     metallic: Averaged<'a>,
+    alpha: Averaged<'a>,
 }
 
 impl<'a> Texels<'a> {
@@ -20,14 +21,20 @@ impl<'a> Texels<'a> {
     pub fn new(map: &'a NormalMap, material: &'a Material, levels: &'a [Level], target: Target) -> Texels<'a> {
         let averaged = |values: &'a Option<Vec<f32>>| material.levels(values.as_deref(), (map.width, map.height));
         let (occlusion, metallic) = (averaged(&material.occlusion), averaged(&material.metallic));
-        Texels { map, material, levels, target, occlusion, metallic }
+        let alpha = averaged(&material.alpha);
+        Texels { map, material, levels, target, occlusion, metallic, alpha }
     }
 
-    /// The normal of texel k of a level as a colour.
+    /// The normal of texel k of a level as a colour, and its alpha.
     pub fn normal(&self, level: usize, k: usize, green_down: bool) -> [f32; 4] {
         let [x, y] = if level == 0 { self.map.projected[k] } else { self.levels[level - 1].normals[k] };
         let z = (1.0 - x * x - y * y).max(0.0).sqrt();
-        [0.5 + 0.5 * x, if green_down { 0.5 - 0.5 * y } else { 0.5 + 0.5 * y }, 0.5 + 0.5 * z, 1.0]
+        [
+            0.5 + 0.5 * x,
+            if green_down { 0.5 - 0.5 * y } else { 0.5 + 0.5 * y },
+            0.5 + 0.5 * z,
+            self.alpha.value(level, k),
+        ]
     }
 
     /// The channels of texel k of a level, those that are not named 0.

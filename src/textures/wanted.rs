@@ -21,10 +21,9 @@ pub struct Wanted {
 /// # Errors
 /// Usage, when `--only` names none of them.
 pub fn textures(args: &Args, stem: &str, number: &str, size: (u32, u32)) -> Result<Vec<Wanted>, Failure> {
-    // BC5 has two channels.
-    let two_channel = args.two_channel || args.blocks;
     let name = |kind: &str| format!("{stem}_{kind}{number}");
-    let normal = Plan { name: name(NORMAL), channels: if two_channel { 2 } else { 4 }, opaque: !two_channel, size };
+    let channels = args.normal_channels();
+    let normal = Plan { name: name(NORMAL), channels, opaque: channels == 4 && !args.keeps_alpha(), size };
     let mut all = vec![(NORMAL, Wanted { plan: normal, channels: None })];
     for (kind, channels) in args.companions() {
         let opaque = channels.last() == Some(&Channel::One);

@@ -87,7 +87,17 @@ fn pillow_decodes_dds_to_the_texels_of_the_png() {
     write(&["--name", "plain", "--format", "dds"]);
     write(&["--name", "blocks", "--format", "dds", "--blocks"]);
     write(&["--name", "one", "--format", "dds", "--blocks", "--target", "generic"]);
-    let names = ["plain_normal", "plain_orm", "blocks_normal", "blocks_orm", "one_roughness"];
+    // Alpha of normals goes through BC7.
+    let leather = image::open(root().join("fixtures/maps/leather.png")).unwrap().to_rgb8();
+    let alpha = |i: u32, j: u32| (40 + i + j / 2) as u8;
+    let with_alpha = image::RgbaImage::from_fn(128, 128, |i, j| {
+        let [r, g, b] = leather.get_pixel(i, j).0;
+        image::Rgba([r, g, b, alpha(i, j)])
+    });
+    with_alpha.save(at.join("leather.png")).unwrap();
+    let keep = ["textures", "leather.png", "--normal-alpha", "keep", "--blocks", "--format", "dds", "-o", "."];
+    bake(at, &keep).ok();
+    let names = ["plain_normal", "plain_orm", "blocks_normal", "blocks_orm", "one_roughness", "leather_normal"];
     let files: Vec<PathBuf> = names.iter().map(|name| at.join(format!("{name}.dds"))).collect();
     let paths: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
     let found = python(&program, "pillow.py", &paths);
@@ -102,6 +112,7 @@ fn pillow_decodes_dds_to_the_texels_of_the_png() {
             "plain_orm" => ("RGBA", difference((&texels, 4), (&orm, 3), 3), (0.0, 0)),
             // x and y; the shader makes z.
             "blocks_normal" => ("RGB", difference((&texels, 3), (&normal, 3), 2), (1.0, 8)),
+            "leather_normal" => ("RGBA", difference((&texels, 4), (with_alpha.as_raw(), 4), 4), (2.0, 24)),
             "blocks_orm" => ("RGBA", difference((&texels, 4), (&orm, 3), 3), (1.0, 8)),
             _ => ("L", difference((&texels, 1), (&green, 1), 1), (1.0, 8)),
         };

@@ -11,7 +11,7 @@
 //! Masking is Hammon's as in [`super::fit`], for the α along the azimuth of view and of light.
 
 use super::baked::{Anisotropy, Level};
-use super::fit::{Facet, LANES, Lanes, Offsets, Samples, Scratch, WORTH, descend, place, shine};
+use super::fit::{Facet, LANES, Lanes, Offsets, Samples, Scratch, WORTH, descend, place, shine, whole};
 use super::options::{Axes, LEAST_ALPHA};
 use multiversion::multiversion;
 
@@ -72,7 +72,7 @@ fn halved([cos, sin]: [f32; 2]) -> [f32; 2] {
     [c, if sin < 0.0 { -s } else { s }]
 }
 
-/// The lobe nearest to facets of mean normal `mean` and mean α² `a2`; none of them has a lesser α² than `least`. Where squares of
+/// The lobe nearest to facets, and its error as a part of what they show: facets of mean normal `mean` and mean α² `a2`; none of them has a lesser α² than `least`. Where squares of
 /// projected normals are small, it is that of the limit of small variances.
 pub(super) fn nearest(
     facets: &[Facet],
@@ -81,13 +81,13 @@ pub(super) fn nearest(
     axes: Axes,
     offsets: &Offsets,
     scratch: &mut Scratch,
-) -> Stretched {
+) -> (Stretched, f32) {
     let centre = if axes == Axes::Surface { [0.0, 0.0, 1.0] } else { mean };
     let (squares, direction) = moments(facets, centre);
     let rest = 1.0 - a2;
     let grown = squares.map(|square| (a2 + 2.0 * square * (rest * rest)).min(1.0));
     if squares[0] < SMALL_SQUARES * a2 {
-        return Stretched { direction, widths: grown };
+        return (Stretched { direction, widths: grown }, 0.0);
     }
     let begin = grown.map(|width| width.max(1.001 * least).min(1.0));
     place(centre, stretch(direction, begin), offsets, &mut scratch.samples);
@@ -107,7 +107,8 @@ pub(super) fn nearest(
         let (over, least_error) = descend((widths[0] - least).max(1e-6), |b| error([at(b).max(widths[1]), widths[1]]));
         (widths[0], found) = (at(over).max(widths[1]), least_error);
     }
-    Stretched { direction, widths: if found < (1.0 - WORTH) * round_error { widths } else { round } }
+    let (widths, error) = if found < (1.0 - WORTH) * round_error { (widths, found) } else { (round, round_error) };
+    (Stretched { direction, widths }, error / whole(samples))
 }
 
 /// What makes slopes of α = 1 those of a lobe with these squared widths.

@@ -52,23 +52,23 @@ pub fn bake(
     progress.begin("fitting roughness", all.iter().skip(1).map(|&(_, height)| u64::from(height)).sum());
     let mut means: Option<Means> = None;
     let mut levels = Vec::with_capacity(all.len() - 1);
+    let mut against_round = Vec::new();
     for (level, &size) in all.iter().enumerate().skip(1) {
         let next = match &means {
             Some(finer) if (finer.width, finer.height) == (2 * size.0, 2 * size.1) => finer.halved(),
             _ => Means::of(map, size),
         };
-        levels.push(fitted(
-            (map, roughness),
-            &next,
-            &Effort::of(map, size, level, options.anisotropy),
-            options.anisotropy,
-            progress,
-        ));
+        let effort = Effort::of(map, size, level, options.anisotropy);
+        let (level, errors) = fitted((map, roughness), &next, &effort, options.anisotropy, progress);
+        levels.push(level);
+        if options.anisotropy == Some(Axes::Surface) {
+            against_round.push(errors);
+        }
         means = Some(next);
     }
     progress.end();
     anisotropy::align(&mut levels);
-    Ok(Textures { levels })
+    Ok(Textures { levels, against_round })
 }
 
 /// Mean normals of a level, not renormalised.
@@ -124,14 +124,14 @@ fn lifted(x: f32, y: f32) -> f32 {
     (1.0 - x * x - y * y).max(0.0).sqrt()
 }
 
-/// A level whose means are known.
+/// A level whose means are known, and the means of [`Texel::errors`].
 fn fitted(
     (map, roughness): (&NormalMap, &Roughness),
     means: &Means,
     effort: &Effort,
     axes: Option<Axes>,
     progress: &dyn Progress,
-) -> Level {
+) -> (Level, [f32; 2]) {
     let width = means.width as usize;
     let size = (means.width, means.height);
     let surface = Surface { map, roughness };
@@ -154,12 +154,16 @@ fn fitted(
         alphas: Vec::with_capacity(count),
         anisotropies: Vec::with_capacity(if axes.is_some() { count } else { 0 }),
     };
+    let mut errors = [0.0_f64; 2];
     for texel in rows.into_iter().flatten() {
+        for (sum, error) in errors.iter_mut().zip(texel.errors) {
+            *sum += f64::from(error);
+        }
         level.normals.push(texel.normal);
         level.alphas.push(texel.alpha);
         level.anisotropies.extend(texel.anisotropy);
     }
-    level
+    (level, errors.map(|sum| (sum / count as f64) as f32))
 }
 
 /// A texel of a level.
@@ -167,6 +171,8 @@ struct Texel {
     normal: [f32; 2],
     alpha: f32,
     anisotropy: Option<Anisotropy>,
+    /// Errors of the lobe that it has and of a round one, as parts of what the facets show; for axes of the surface.
+    errors: [f32; 2],
 }
 
 /// Fits the texels of a row.
@@ -184,9 +190,9 @@ impl Fitter<'_> {
         let mean = unit(sum);
         self.surface.facets(&self.effort.layout, self.size, at, sum, &mut self.facets);
         let spread = Spread::of(&self.facets, mean);
-        let lobe = spread.lobe(&self.facets, mean, &self.effort.offsets, &mut self.scratch);
+        let (lobe, _) = spread.lobe(&self.facets, mean, &self.effort.offsets, &mut self.scratch);
         let alpha = lobe.a2.sqrt().clamp(LEAST_ALPHA, 1.0);
-        Texel { normal: [lobe.normal[0], lobe.normal[1]], alpha, anisotropy: None }
+        Texel { normal: [lobe.normal[0], lobe.normal[1]], alpha, anisotropy: None, errors: [0.0; 2] }
     }
 
     /// The same by an anisotropic lobe.
@@ -194,15 +200,14 @@ impl Fitter<'_> {
         let mean = unit(sum);
         self.surface.facets(&self.effort.layout, self.size, at, sum, &mut self.facets);
         let spread = Spread::of(&self.facets, mean);
+        let (round, round_error) = spread.lobe(&self.facets, mean, &self.effort.offsets, &mut self.scratch);
         // Around a normal that is free, the lobe is stretched about the one that is the best for a round lobe.
-        let normal = match axes {
-            Axes::Surface => mean,
-            Axes::Normal => spread.lobe(&self.facets, mean, &self.effort.offsets, &mut self.scratch).normal,
-        };
+        let normal = if axes == Axes::Surface { mean } else { round.normal };
         let a2 = [spread.a2, spread.range[0]];
-        let lobe = anisotropy::nearest(&self.facets, normal, a2, axes, &self.effort.offsets, &mut self.scratch);
+        let (lobe, error) =
+            anisotropy::nearest(&self.facets, normal, a2, axes, &self.effort.offsets, &mut self.scratch);
         let (alpha, anisotropy) = lobe.stored();
-        Texel { normal: [normal[0], normal[1]], alpha, anisotropy: Some(anisotropy) }
+        Texel { normal: [normal[0], normal[1]], alpha, anisotropy: Some(anisotropy), errors: [error, round_error] }
     }
 }
 
@@ -242,12 +247,12 @@ impl Spread {
         self.variance * (1.0 - self.a2) * (1.0 - self.a2)
     }
 
-    /// The lobe that is nearest to the facets.
-    fn lobe(&self, facets: &[Facet], mean: [f32; 3], offsets: &Offsets, scratch: &mut Scratch) -> Lobe {
+    /// The lobe that is nearest to the facets, and its error; none in the limit of small variances.
+    fn lobe(&self, facets: &[Facet], mean: [f32; 3], offsets: &Offsets, scratch: &mut Scratch) -> (Lobe, f32) {
         let [least, most] = self.range;
         let a2 = self.a2 + self.broadening();
         if self.variance < SMALL_VARIANCE * self.a2 && most <= (1.0 + SMALL_VARIANCE) * least {
-            return Lobe { normal: mean, a2: a2.min(1.0) };
+            return (Lobe { normal: mean, a2: a2.min(1.0) }, 0.0);
         }
         let begin = Lobe { normal: mean, a2: a2.max(1.001 * least).min(1.0) };
         fit::nearest(facets, begin, least, offsets, scratch)

@@ -5,6 +5,9 @@
 pub struct Textures {
     /// Level 1 first; none for a map of one texel.
     pub levels: Vec<Level>,
+    /// With axes of the surface, what that costs each level: mean errors of highlights as parts of the whole, with anisotropy and
+    /// without. Empty otherwise.
+    pub against_round: Vec<[f32; 2]>,
 }
 
 /// One level.

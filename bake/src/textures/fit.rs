@@ -119,9 +119,15 @@ pub(super) struct Scratch {
     seen: Vec<Seen>,
 }
 
-/// The lobe nearest to the facets. `begin` has their mean normal and an α² to begin at; none of them has a lesser α² than
+/// The lobe nearest to the facets, and its error as a part of what they show. `begin` has their mean normal and an α² to begin at; none of them has a lesser α² than
 /// `least`.
-pub(super) fn nearest(facets: &[Facet], begin: Lobe, least: f32, offsets: &Offsets, scratch: &mut Scratch) -> Lobe {
+pub(super) fn nearest(
+    facets: &[Facet],
+    begin: Lobe,
+    least: f32,
+    offsets: &Offsets,
+    scratch: &mut Scratch,
+) -> (Lobe, f32) {
     let a = begin.a2.sqrt();
     place(begin.normal, [[a, 0.0], [0.0, a]], offsets, &mut scratch.samples);
     shine(facets, &mut scratch.samples, &mut scratch.terms);
@@ -143,7 +149,19 @@ pub(super) fn nearest(facets: &[Facet], begin: Lobe, least: f32, offsets: &Offse
     best = moved(best, samples);
     see(best.0.normal, samples, seen);
     best = narrowed(best.0, least, samples, seen);
-    if best.1 < (1.0 - WORTH) * at_mean.1 { best.0 } else { at_mean.0 }
+    let (lobe, error) = if best.1 < (1.0 - WORTH) * at_mean.1 { best } else { at_mean };
+    (lobe, error / whole(samples))
+}
+
+/// What the facets show, up to the factor of errors.
+pub(super) fn whole(samples: &[Samples]) -> f32 {
+    let mut sums = [0.0_f32; LANES];
+    for of in samples {
+        for k in 0..LANES {
+            sums[k] += of.weight[k] * of.exact[k];
+        }
+    }
+    sums.iter().sum::<f32>().max(f32::MIN_POSITIVE)
 }
 
 /// Factor of the broadening from one step of the search to the next.

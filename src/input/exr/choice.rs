@@ -13,6 +13,8 @@ use exr::meta::MetaData;
 pub(super) enum Need {
     /// Normals of three channels.
     Normals,
+    /// The same, with alpha where it is there.
+    NormalsAndAlpha,
     /// x and y of normals.
     TwoChannels,
     /// x and y of normals, one of them in alpha.
@@ -87,7 +89,7 @@ pub(super) fn choose(
         check_rivals(best, &rivals, &layers, need)?;
         notes.extend(taken(best, &layers));
     }
-    if matches!(need, Need::Normals | Need::TwoChannels | Need::WithAlpha)
+    if matches!(need, Need::Normals | Need::NormalsAndAlpha | Need::TwoChannels | Need::WithAlpha)
         && Kind::of(&best.layer.meaning) == Kind::OtherNormals
     {
         notes.push(format!(
@@ -169,7 +171,7 @@ fn list<'a>(layers: impl IntoIterator<Item = &'a Layer>) -> String {
 impl Need {
     fn what(self) -> &'static str {
         match self {
-            Need::Normals | Need::TwoChannels | Need::WithAlpha => "the normals",
+            Need::Normals | Need::NormalsAndAlpha | Need::TwoChannels | Need::WithAlpha => "the normals",
             Need::Height => "the heights",
             Need::Radiance => "the radiance",
         }
@@ -177,7 +179,7 @@ impl Need {
 
     fn expected(self) -> &'static str {
         match self {
-            Need::Normals => {
+            Need::Normals | Need::NormalsAndAlpha => {
                 "expected a layer of normals with channels R, G, B or X, Y, Z (two of them with --channels xy; for a \
                  height map give --height SCALE)"
             }
@@ -193,6 +195,11 @@ impl Need {
         let kind = Kind::of(&layer.meaning);
         let found = match self {
             Need::Normals => normals(layer, kind, |layer, roles| layer.all(roles).map(Set::Three)),
+            Need::NormalsAndAlpha => normals(layer, kind, |layer, roles| {
+                let [x, y, z] = roles;
+                let with_alpha = layer.all([x, y, z, Role::Alpha]).map(Set::Four);
+                with_alpha.or_else(|| layer.all(roles).map(Set::Three))
+            }),
             Need::TwoChannels => normals(layer, kind, |layer, [x, y, _]| layer.all([x, y]).map(Set::Two)),
             Need::WithAlpha => {
                 normals(layer, kind, |layer, [x, y, z]| layer.all([x, y, z, Role::Alpha]).map(Set::Four))

@@ -16,7 +16,7 @@ mod tests;
 
 use super::error::InputError;
 use super::limits::check_size;
-use super::options::InputOptions;
+use super::options::{AlphaUse, InputOptions};
 use super::pixels::{Pixels, Stored, Values};
 use attributes::Subject;
 use choice::{Choice, Need, Set, choose};
@@ -35,7 +35,8 @@ pub(super) fn decode(
 ) -> Result<Pixels, InputError> {
     let need = match (options.height, options.channels.unwrap_or_default().two()) {
         (Some(_), _) => Need::Height,
-        (None, None) => Need::Normals,
+        (None, None) if options.alpha == AlphaUse::default() => Need::Normals,
+        (None, None) => Need::NormalsAndAlpha,
         (None, Some([x, y])) if x.max(y) < ALPHA => Need::TwoChannels,
         (None, Some(_)) => Need::WithAlpha,
     };

@@ -12,6 +12,7 @@
 use super::lengths::Fit;
 use super::scale::Scale;
 use crate::input::error::InputError;
+use crate::input::options::{AlphaUse, Channels, InputOptions};
 use crate::input::pixels::{Stored, Values, unorm8};
 use std::path::Path;
 
@@ -116,13 +117,26 @@ impl Coverage {
         Ok(())
     }
 
-    /// Says that alpha is not used, where it holds something.
-    pub fn note_alpha(&self, values: &Values, two: Option<[usize; 2]>, notes: &mut Vec<String>) {
-        let used = two.is_some_and(|columns| columns.contains(&3));
-        let holds_data = |texel: [f32; 4]| texel[3] != 1.0 && !self.is_unpainted(&texel);
-        if !used && values.has_alpha() && values.texels().any(holds_data) {
-            notes.push("the alpha channel holds data (often roughness or height); ignored".into());
+    /// Says that alpha is not used, where it holds something and nobody asked for that.
+    pub fn note_alpha(&self, values: &Values, options: &InputOptions, notes: &mut Vec<String>) {
+        if !options.channels.is_some_and(Channels::uses_alpha) {
+            note_alpha(values, |texel| self.is_unpainted(texel), options.alpha, notes);
         }
+    }
+}
+
+/// Says of texels that are painted that their alpha is not used.
+pub(super) fn note_alpha(
+    values: &Values,
+    is_unpainted: impl Fn(&[f32; 4]) -> bool,
+    alpha: AlphaUse,
+    notes: &mut Vec<String>,
+) {
+    let AlphaUse::Ignored { flag } = alpha else { return };
+    let holds_data = |texel: [f32; 4]| texel[3] != 1.0 && !is_unpainted(&texel);
+    if values.has_alpha() && values.texels().any(holds_data) {
+        let what = "the alpha channel holds data (often roughness or height); ignored";
+        notes.push(flag.map_or(what.to_owned(), |flag| format!("{what}, unless {flag} says what it is")));
     }
 }
 

@@ -36,6 +36,7 @@ pub(super) fn raw_normals(
 ) -> Result<RawNormals, InputError> {
     let Pixels { width, height, values, stored } = pixels;
     if let Some(scale) = options.height {
+        coverage::note_alpha(&values, |_| false, options.alpha, notes);
         let heights = heights::heights(path, width, values, &stored, options, notes)?;
         let raw = RawNormals::from_heights(width, height, &heights, scale, options.wrap);
         let raw = match part {
@@ -79,7 +80,7 @@ impl Meaning {
             channels::refuse_two(path, values, &sample, stored, scale, &coverage)?;
         }
         coverage.check(path, notes)?;
-        coverage.note_alpha(values, two, notes);
+        coverage.note_alpha(values, options, notes);
         let painted = || values.texels().filter(|texel| !coverage.is_unpainted(texel));
         let chosen = sample.iter().copied();
         let transfer = colour::transfer(path, chosen, painted, stored, scale, options, notes)?;

@@ -52,11 +52,17 @@ pub struct Jobs {
 pub fn gather(document: &Document, json: &Value) -> Result<Jobs, Fault> {
     let mut found = Jobs::default();
     for (index, material) in document.materials.iter().enumerate() {
-        let Some(normal) = &material.normal_texture else { continue };
         let name = match &material.name {
             Some(name) => format!("material {index} '{name}'"),
             None => format!("material {index}"),
         };
+        let coat = material.extensions.get("KHR_materials_clearcoat");
+        if coat.is_some_and(|coat| coat.get("clearcoatNormalTexture").is_some()) {
+            found
+                .notes
+                .push(format!("{name}: its clear coat keeps its own normals and roughness, which are not filtered"));
+        }
+        let Some(normal) = &material.normal_texture else { continue };
         match job(document, json, index, material, normal).map_err(|fault| fault.of(&name))? {
             Ok(job) => found.add(job),
             Err(why) => found.notes.push(format!("{name} is left as it is: {why}")),
@@ -206,6 +212,11 @@ mod tests {
             let found = gathered(&materials).unwrap();
             assert!(found.jobs.is_empty() && found.notes[0].contains(part), "{:?}", found.notes);
         }
+        let coat = r#""extensions":{"KHR_materials_clearcoat":{"clearcoatNormalTexture":{"index":0}}}"#;
+        let coated = gathered(&format!(r#"{{"normalTexture":{{"index":0}},{coat}}}"#)).unwrap();
+        assert!(coated.jobs.len() == 1 && coated.notes[0].contains("its clear coat keeps"), "{:?}", coated.notes);
+        let alone = gathered(&format!("{{{coat}}}")).unwrap();
+        assert!(alone.jobs.is_empty() && alone.notes.len() == 1, "{:?}", alone.notes);
         assert_eq!(gathered(r#"{"normalTexture":{"index":1}}"#).unwrap().jobs[0].wrap, Wrap::Clamp);
         for materials in [
             r#"{"normalTexture":{"index":7}}"#,

@@ -36,8 +36,8 @@ impl Making<'_> {
     /// # Errors
     /// An image that can't be read, is too large or is no map of its kind.
     pub fn of(&self, job: &Job) -> Result<Baked, Failure> {
-        let map = self.normal_map(job)?;
-        let material = self.material(job, &map)?;
+        let (map, alpha) = self.normal_map(job)?;
+        let material = Material { alpha, ..self.material(job, &map)? };
         let label = label(job.normal);
         let options = TexturesOptions { max_memory: self.args.max_memory, ..TexturesOptions::default() };
         options.check(&map).map_err(|e| self.named(Failure::bake(&label, &e)))?;
@@ -49,9 +49,12 @@ impl Making<'_> {
         // Level 0 of what was not multiplied is the image that is there.
         let unchanged = |image: Option<usize>, factor: f64| image.filter(|_| factor == 1.0);
         Ok(Baked {
-            normal: self
-                .pictures(&map, unchanged(Some(job.normal), job.scale), &|level, k| texels.normal(level, k, false))?,
-            roughness: self.pictures(&map, unchanged(job.map, job.roughness), &|level, k| {
+            normal: self.pictures(
+                (&map, material.alpha.is_none()),
+                unchanged(Some(job.normal), job.scale),
+                &|level, k| texels.normal(level, k, false),
+            )?,
+            roughness: self.pictures((&map, true), unchanged(job.map, job.roughness), &|level, k| {
                 texels.channels(&channels, Stored::Perceptual, level, k)
             })?,
         })
@@ -72,14 +75,16 @@ impl Making<'_> {
         }
     }
 
-    /// The normals, with their scale: the specification multiplies x and y before it makes the length 1 again.
-    fn normal_map(&self, job: &Job) -> Result<NormalMap, Failure> {
+    /// The normals, with their scale: the specification multiplies x and y before it makes the length 1 again. And their alpha, where
+    /// it is there and kept.
+    fn normal_map(&self, job: &Job) -> Result<(NormalMap, Option<Vec<f32>>), Failure> {
         let label = label(job.normal);
         let options = InputOptions {
             wrap: job.wrap,
             channels: Some(Channels::Xyz),
             colour_space: ColourSpace::Linear,
             max_memory: self.args.max_memory,
+            alpha: self.args.alpha_use(),
             ..InputOptions::default()
         };
         let loaded =
@@ -96,7 +101,7 @@ impl Making<'_> {
                 (*x, *y) = if length > 0.0 { (scaled_x / length, scaled_y / length) } else { (0.0, 0.0) };
             }
         }
-        Ok(map)
+        Ok((map, loaded.alpha))
     }
 
     /// Roughness, and what the map's other channels hold.
@@ -122,14 +127,19 @@ impl Making<'_> {
         })
     }
 
-    /// A texture, `kept` where its level 0 is an image of the file.
-    fn pictures(&self, map: &NormalMap, kept: Option<usize>, value: Value<'_>) -> Result<Pictures, Failure> {
+    /// A texture, whose alpha is 1 everywhere where it is opaque; `kept` where its level 0 is an image of the file.
+    fn pictures(
+        &self,
+        (map, opaque): (&NormalMap, bool),
+        kept: Option<usize>,
+        value: Value<'_>,
+    ) -> Result<Pictures, Failure> {
         let all = sizes(map.width, map.height);
         let most = self.args.gltf.max_size.unwrap_or(u32::MAX);
         // The last level has one texel, and so is small enough.
         let first = all.iter().position(|(width, height)| (*width).max(*height) <= most).unwrap_or(all.len() - 1);
         let value = |level: usize, k: usize| value(level + first, k);
-        let plan = Plan { name: String::new(), channels: 4, opaque: true, size: all[first] };
+        let plan = Plan { name: String::new(), channels: 4, opaque, size: all[first] };
         let layout = Layout { format: Format::Ktx2, bits: 8, zstd: self.args.zstd, blocks: false };
         let needed = layout.payload_bytes(&plan);
         if needed > self.args.max_memory {
