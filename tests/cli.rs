@@ -87,6 +87,8 @@ mod textures_alpha;
 mod textures_flags;
 #[path = "cli/textures_gltf.rs"]
 mod textures_gltf;
+#[path = "cli/textures_gltf_coat.rs"]
+mod textures_gltf_coat;
 #[path = "cli/textures_project.rs"]
 mod textures_project;
 #[path = "cli/textures_readers.rs"]

@@ -49,6 +49,15 @@ pub struct MetallicRoughness {
     pub metallic_roughness_texture: Option<TextureInfo>,
 }
 
+/// KHR_materials_clearcoat: the part that says how the coat shines.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub struct ClearCoat {
+    pub clearcoat_roughness_factor: f64,
+    pub clearcoat_roughness_texture: Option<TextureInfo>,
+    pub clearcoat_normal_texture: Option<TextureInfo>,
+}
+
 /// A texture of a material.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]

@@ -1,7 +1,7 @@
 //! A glTF file with other textures: what is edited in its JSON, and where new images lie.
 
 use super::binary::{self, Images};
-use super::jobs::{Job, Use};
+use super::jobs::{Job, Layer, Use};
 use super::uses::Free;
 use crate::gltf::container::Container;
 use crate::gltf::document::{Document, missing};
@@ -311,16 +311,23 @@ impl Writer<'_> {
         Ok(format!("{{{}}}", old.chain(new).collect::<Vec<_>>().join(",")))
     }
 
-    /// Points a material to its textures, whose texels have its factors.
+    /// The member of a material that lies at the end of a path; none where there is none.
+    fn within(&self, at: &Span, path: &[&str]) -> Result<Option<Span>, Fault> {
+        let step = |at: Option<Span>, key: &&str| at.map_or(Ok(None), |at| self.text.member(&at, key));
+        path.iter().try_fold(Some(at.clone()), step)
+    }
+
+    /// Points a layer of a material to its textures, whose texels have its factors.
     fn material(
         &mut self,
         at: &Span,
         place: &Use,
         (normal, roughness, occlusion): (usize, usize, Option<usize>),
     ) -> Result<(), Fault> {
-        let text = self.text;
+        let (text, keys) = (self.text, place.layer.keys());
         let index = |index: usize| ("index", index.to_string());
-        let Some(info) = text.member(at, "normalTexture")? else { return Ok(()) };
+        let info = self.within(at, &[keys.normal_in, &[keys.normal]].concat())?;
+        let Some(info) = info else { return Ok(()) };
         let mut members = vec![index(normal)];
         if text.member(&info, "scale")?.is_some() {
             members.push(("scale", "1".to_owned()));
@@ -329,7 +336,7 @@ impl Writer<'_> {
         if let (Some(new), Some(info)) = (occlusion, text.member(at, "occlusionTexture")?) {
             self.edits.set(text, &info, &[index(new)])?;
         }
-        // A material without a map gets one that lies as its normals do.
+        // A layer without a map gets one that lies as its normals do.
         let mut new_info = vec![index(roughness)];
         if let Some(set) = text.member(&info, "texCoord")? {
             new_info.push(("texCoord", text.0[set].to_owned()));
@@ -338,19 +345,20 @@ impl Writer<'_> {
         if let Some(transform) = transform.transpose()?.flatten() {
             new_info.push(("extensions", format!("{{\"KHR_texture_transform\":{}}}", &text.0[transform])));
         }
-        let new_info = ("metallicRoughnessTexture", object(&new_info));
-        let Some(pbr) = text.member(at, "pbrMetallicRoughness")? else {
+        let new_info = (keys.roughness, object(&new_info));
+        let Some(holder) = self.within(at, keys.roughness_in)? else {
             return self.edits.set(text, at, &[("pbrMetallicRoughness", object(&[new_info]))]);
         };
         let mut members = Vec::new();
-        if text.member(&pbr, "roughnessFactor")?.is_some() {
-            members.push(("roughnessFactor", "1".to_owned()));
+        // A coat without a factor has none of its map.
+        if place.layer == Layer::Coat || text.member(&holder, keys.factor)?.is_some() {
+            members.push((keys.factor, "1".to_owned()));
         }
-        match text.member(&pbr, "metallicRoughnessTexture")?.filter(|_| place.roughness.is_some()) {
+        match text.member(&holder, keys.roughness)?.filter(|_| place.roughness.is_some()) {
             Some(info) => self.edits.set(text, &info, &[index(roughness)])?,
             None => members.push(new_info),
         }
-        self.edits.set(text, &pbr, &members)
+        self.edits.set(text, &holder, &members)
     }
 
     /// Adds elements to a list of the whole.
