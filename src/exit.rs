@@ -105,6 +105,7 @@ impl From<glint_view::gpu::GpuError> for Failure {
             GpuError::NoAdapter { .. } | GpuError::NoDevice { .. } | GpuError::Failed(_) => Exit::Unsupported,
             GpuError::Refused(_) => Exit::Unexpected,
             GpuError::BadPack(_) => Exit::BadInput,
+            GpuError::TooLarge(_) => Exit::LimitExceeded,
         };
         Failure::new(exit, error.to_string())
     }

@@ -98,3 +98,6 @@ mod textures_udim;
 #[cfg(feature = "view")]
 #[path = "cli/view.rs"]
 mod view;
+#[cfg(feature = "view")]
+#[path = "cli/view_textures.rs"]
+mod view_textures;

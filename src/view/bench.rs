@@ -1,7 +1,7 @@
 //! Time of each method over that of its smooth baseline, in one run, with the error against its reference beside it.
 
 use crate::gpu::{Gpu, GpuError};
-use crate::render::{Camera, Compare, LightKind, Method, Overlay, Renderer, Side, Subject, View, picture};
+use crate::render::{Camera, Compare, LightKind, Overlay, Renderer, Side, Subject, View, baseline_of, picture};
 use crate::scene::Mesh;
 use crate::settings::{Against, Settings, rect_facing};
 use crate::subjects::Subjects;
@@ -56,12 +56,7 @@ impl Setup {
     /// footprints are round and equal, and from 60° to the side, where they are long. None for what is a baseline itself.
     pub fn of(list: &[Subject], index: usize, settings: &Settings, bench: BenchSettings) -> Vec<Setup> {
         let shown = &list[index];
-        let Some(method) = shown.method.baseline() else { return Vec::new() };
-        let Some(base) =
-            list.iter().find(|other| other.method == method && (other.name == shown.name || method == Method::Smooth))
-        else {
-            return Vec::new();
-        };
+        let Some(base) = baseline_of(list, index).map(|base| &list[base]) else { return Vec::new() };
         let mut settings = settings.clone();
         settings.shown = index;
         settings.against = Against::Nothing;

@@ -1,7 +1,7 @@
 //! What packs hold that can be shown, on the GPU.
 
 use crate::gpu::{Gpu, GpuError, ResourceSet, Resources, bind_pack};
-use crate::methods;
+use crate::methods::{self, textures::Textured};
 use crate::render::{Material, Method, Renderer, Subject};
 use crate::scene::Mesh;
 use glam::Vec3;
@@ -47,6 +47,28 @@ impl Subjects {
         Ok(subjects)
     }
 
+    /// Uploads what a file says of its surfaces, and shows it before the smooth BRDF: with its own mips, and with plain ones.
+    pub fn add_textures(&mut self, gpu: &Gpu, textured: &Textured) -> Result<(), GpuError> {
+        let texels_per_unit = textured.texels();
+        for method in [Method::Textures, Method::PlainTextures] {
+            let materials = methods::textures::upload(gpu, textured, method == Method::PlainTextures)?;
+            let Some(first) = materials.first() else { continue };
+            let material = Material { texels_per_unit, ..Material::default() };
+            let shown = Subject {
+                name: textured.name.clone(),
+                method,
+                data: Rc::clone(first),
+                parts: textured.parts.iter().map(|&material| Rc::clone(&materials[material])).collect(),
+                material,
+                files: Vec::new(),
+                constants: vec![("EMITS", f64::from(u8::from(textured.emits())))],
+                rim_roughness: 0.0,
+            };
+            self.shown.insert(self.shown.len() - 1, shown);
+        }
+        Ok(())
+    }
+
     /// A renderer of a mesh in the light of the environment, if there is one.
     pub fn renderer(&self, gpu: &Gpu, mesh: &Mesh) -> Result<Renderer, GpuError> {
         let mut renderer = Renderer::new(gpu, mesh)?;
@@ -58,8 +80,8 @@ impl Subjects {
 
     fn add(&mut self, method: Method, name: &str, data: &Rc<Resources>, material: Material) -> &mut Subject {
         let (name, data) = (name.to_owned(), Rc::clone(data));
-        let (files, constants) = (Vec::new(), Vec::new());
-        self.shown.push_mut(Subject { name, method, data, material, files, constants, rim_roughness: 0.0 })
+        let (parts, files, constants) = (Vec::new(), Vec::new(), Vec::new());
+        self.shown.push_mut(Subject { name, method, data, parts, material, files, constants, rim_roughness: 0.0 })
     }
 
     fn add_dictionaries(&mut self, gpu: &Gpu, pack: &Pack, colours: &[Vec3]) -> Result<(), GpuError> {

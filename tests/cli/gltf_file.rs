@@ -101,14 +101,19 @@ pub fn quad_parts(materials: &str) -> (String, Vec<u8>) {
     let normal = RgbImage::from_fn(8, 4, |i, _| image::Rgb(if i % 2 < 1 { [176, 128, 246] } else { [80, 128, 246] }));
     let orm = RgbImage::from_fn(8, 4, |i, _| image::Rgb([200, 100, if i < 4 { 0 } else { 255 }]));
     let colour = RgbImage::from_pixel(2, 2, image::Rgb([255, 0, 0]));
+    quad_with(materials, [normal, orm, colour].each_ref().map(png))
+}
+
+/// The same with other images, as files.
+pub fn quad_with(materials: &str, [normal, orm, colour]: [Vec<u8>; 3]) -> (String, Vec<u8>) {
     let floats = |values: &[f32]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>();
     let parts = [
         floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0]),
-        png(&normal),
+        normal,
         floats(&[0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0]),
-        png(&orm),
+        orm,
         [0u16, 1, 2, 2, 1, 3].into_iter().flat_map(u16::to_le_bytes).collect(),
-        png(&colour),
+        colour,
         floats(&[0.0, 0.0, 1.0].repeat(4)),
         floats(&[1.0, 0.0, 0.0, 1.0].repeat(4)),
     ];

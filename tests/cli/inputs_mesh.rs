@@ -72,7 +72,7 @@ fn the_same_mesh_is_the_same_picture() {
     }
 }
 
-/// What `glint-bake textures --gltf` writes is the same mesh: its materials are not drawn, where their textures lie is.
+/// What `glint-bake textures --gltf` writes is the same mesh to methods of packs, which take of materials only where their textures lie.
 #[test]
 fn other_textures_leave_the_mesh_as_it_was() {
     let Some(folder) = folder() else { return };

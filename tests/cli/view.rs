@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// Runs glint-view in `folder`.
-fn view(folder: &Path, args: &[&str]) -> Outcome {
+pub fn view(folder: &Path, args: &[&str]) -> Outcome {
     run("glint-view", folder, args)
 }
 
@@ -23,13 +23,13 @@ pub fn folder() -> Option<tempfile::TempDir> {
 }
 
 /// Width, height and pixels of a PNG.
-fn png(path: &Path) -> (u32, u32, Vec<u8>) {
+pub fn png(path: &Path) -> (u32, u32, Vec<u8>) {
     let picture = image::open(path).unwrap().to_rgb8();
     (picture.width(), picture.height(), picture.into_raw())
 }
 
 /// How much two pictures of a size differ, 0 to 255.
-fn difference(a: &[u8], b: &[u8]) -> f64 {
+pub fn difference(a: &[u8], b: &[u8]) -> f64 {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / a.len() as f64
 }

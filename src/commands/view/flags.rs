@@ -8,7 +8,9 @@ use std::path::PathBuf;
 #[derive(clap::Args, Clone, Debug)]
 pub struct Args {
     /// Packs to show; what all of them hold can be compared
-    #[arg(value_name = "PACK", required = true)]
+    ///
+    /// Lists that `glint-bake textures` writes, DIR/NAME.json, are shown, too. None is needed with --mesh, whose materials are shown.
+    #[arg(value_name = "PACK", required_unless_present = "mesh")]
     pub packs: Vec<PathBuf>,
     /// List what the packs hold that can be shown, and the adapter
     #[arg(long)]
@@ -21,7 +23,7 @@ pub struct Args {
     pub scene: SceneFlags,
     #[command(flatten)]
     pub material: MaterialFlags,
-    /// Most bytes to read and to decompress a pack, as in 512M
+    /// Most bytes to read and to decompress of a pack or an image, as in 512M
     #[arg(long, value_name = "BYTES", default_value = "4G", value_parser = values::bytes)]
     pub max_memory: u64,
 }
@@ -72,9 +74,9 @@ pub struct ViewFlags {
     /// What to show, as --list names it: a method, or METHOD:NAME [default: the first of the list]
     #[arg(long, value_name = "METHOD")]
     pub method: Option<String>,
-    /// What to compare it with: another entry of --list, or reference
+    /// What to compare it with: another entry of --list, baseline, or reference
     ///
-    /// The reference is the method's own brute force.
+    /// The baseline is what the method is measured against, as --bench does; the reference is the method's own brute force.
     #[arg(long, value_name = "METHOD")]
     pub against: Option<String>,
     /// How to compare
@@ -110,6 +112,8 @@ pub struct SceneFlags {
     #[arg(long, value_name = "SHAPE", default_value = "plane")]
     pub shape: ShapeKind,
     /// Draw this mesh (.glb, .gltf, .obj) instead
+    ///
+    /// The materials of a glTF file are one more method, textures.
     #[arg(long, value_name = "FILE", conflicts_with = "shape")]
     pub mesh: Option<PathBuf>,
     /// Camera as azimuth,elevation,distance or azimuth,elevation,distance,x,y,z: degrees, then what it looks at

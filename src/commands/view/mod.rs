@@ -1,8 +1,10 @@
-//! `glint-view`: packs in a window, as pictures, or as a bench. Only builds with the feature `view` can draw.
+//! `glint-view`: packs and materials in a window, as pictures, or as a bench. Only builds with the feature `view` can draw.
 
 mod flags;
 #[cfg(feature = "view")]
 mod run;
+#[cfg(feature = "view")]
+mod textures;
 
 pub use flags::Args;
 #[cfg(feature = "view")]

@@ -1,6 +1,7 @@
-//! glint-view at work: packs to the GPU, then pictures, a bench or a window.
+//! glint-view at work: packs and materials to the GPU, then pictures, a bench or a window.
 
 use super::flags::{Args, CompareWhen, LightFlag, MaterialFlags, OverlayKind, ShapeKind, TargetKind, Tone};
+use super::textures::{material_of, materials_of};
 use crate::canvas::Canvas;
 use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
@@ -11,8 +12,10 @@ use glam::Vec3;
 use glint_formats::{Limits, Pack};
 use glint_view::bench::{BenchSettings, Setup, measure, table};
 use glint_view::gpu::{AdapterChoice, Gpu, GpuError};
+use glint_view::methods::textures::Textured;
 use glint_view::render::{
-    LightKind, Material, Method, Overlay, Picture, Renderer, SWAP_LAYERS, Subject, ToneMapping, View, picture,
+    LightKind, Material, Method, Overlay, Picture, Renderer, SWAP_LAYERS, Subject, ToneMapping, View, baseline_of,
+    picture,
 };
 use glint_view::scene::{Mesh, MeshError, Orbit, Placement};
 use glint_view::settings::{Against, Layout, Settings};
@@ -30,16 +33,24 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let placement = placement.map_err(|error| Failure::usage(format!("--camera {error}")))?;
     check_outputs(args)?;
     let limits = Limits { max_file_bytes: args.max_memory, max_raw_bytes: args.max_memory, ..Limits::default() };
-    let reports: Vec<Report> = args.packs.iter().map(|path| Report::of_file(path, &limits)).collect();
+    let (lists, packs): (Vec<&PathBuf>, Vec<&PathBuf>) =
+        args.packs.iter().partition(|path| has_extension(path, "json"));
+    let reports: Vec<Report> = packs.iter().map(|path| Report::of_file(path, &limits)).collect();
     reports.iter().try_for_each(|report| report.sound().map(|_| ()))?;
     let mesh = mesh_of(args, terminal)?;
+    let mut textured: Vec<Textured> = materials_of_mesh(args, &mesh, terminal)?.into_iter().collect();
+    for path in lists {
+        let (of_list, notes) = material_of(path, args.max_memory)?;
+        say(path, &notes, terminal);
+        textured.push(of_list);
+    }
     if args.picture.opens_window(args.list) {
-        return window(args, placement, reports, mesh, terminal);
+        return window(args, placement, Shown { reports, textured }, mesh, terminal);
     }
     let gpu = Gpu::headless(&adapter(args))?;
     check_size(&gpu, size(args))?;
     terminal.detail(&format!("adapter: {}", gpu.adapter_line()));
-    let subjects = upload(&gpu, &reports, &args.material)?;
+    let subjects = upload(&gpu, &Shown { reports, textured }, &args.material)?;
     for note in subjects.notes() {
         terminal.say(&note);
     }
@@ -78,18 +89,26 @@ fn size(args: &Args) -> [u32; 2] {
     [args.picture.size.0, args.picture.size.1]
 }
 
-/// Everything of the packs, which are sound, on a device.
-fn upload(gpu: &Gpu, reports: &[Report], flags: &MaterialFlags) -> Result<Subjects, GpuError> {
-    let packs: Vec<&Pack> = reports.iter().filter_map(Report::pack).collect();
+/// What is brought to a device: packs, which are sound, and materials of textures.
+struct Shown {
+    reports: Vec<Report>,
+    textured: Vec<Textured>,
+}
+
+/// Everything of it on a device.
+fn upload(gpu: &Gpu, shown: &Shown, flags: &MaterialFlags) -> Result<Subjects, GpuError> {
+    let packs: Vec<&Pack> = shown.reports.iter().filter_map(Report::pack).collect();
     let colours: Vec<Vec3> = flags.colour.iter().map(|&colour| colour.into()).collect();
-    Subjects::of_packs(gpu, &packs, &colours)
+    let mut subjects = Subjects::of_packs(gpu, &packs, &colours)?;
+    shown.textured.iter().try_for_each(|textured| subjects.add_textures(gpu, textured))?;
+    Ok(subjects)
 }
 
 /// Opens a window on the packs and returns when it is closed.
 fn window(
     args: &Args,
     placement: Option<Placement>,
-    reports: Vec<Report>,
+    shown: Shown,
     mesh: Mesh,
     terminal: Terminal,
 ) -> Result<(), Failure> {
@@ -101,14 +120,15 @@ fn window(
         (None, ShapeKind::Sphere) => meshes.swap(0, 1),
     }
     let (wishes, flags) = (args.clone(), args.material.clone());
-    let packs: Vec<String> = args.packs.iter().map(|path| path.display().to_string()).collect();
+    let files = args.packs.iter().chain(&args.scene.mesh).map(|path| path.display().to_string());
+    let files: Vec<String> = files.collect();
     let start = Start {
-        title: format!("{} - glint-view", packs.join(" ")),
+        title: format!("{} - glint-view", files.join(" ")),
         size: size(args),
         adapter: adapter(args),
         meshes,
         load: Box::new(move |gpu| {
-            let subjects = upload(gpu, &reports, &flags)?;
+            let subjects = upload(gpu, &shown, &flags)?;
             let notes = subjects.notes();
             Ok(Loaded { list: subjects.shown, environment: subjects.environment, notes })
         }),
@@ -159,10 +179,33 @@ fn mesh_of(args: &Args, terminal: Terminal) -> Result<Mesh, Failure> {
         Failure::new(exit, error.to_string())
     };
     let mesh = guarded(path, || Mesh::load(path).map_err(failure))?;
-    for note in &mesh.notes {
-        terminal.say(&format!("{}: {note}", path.display()));
-    }
+    say(path, &mesh.notes, terminal);
     Ok(mesh)
+}
+
+/// The materials of the mesh's file. Where there are packs to be shown, these do not wait for an image that is wrong.
+fn materials_of_mesh(args: &Args, mesh: &Mesh, terminal: Terminal) -> Result<Option<Textured>, Failure> {
+    let Some(path) = args.scene.mesh.as_deref().filter(|path| !has_extension(path, "obj")) else { return Ok(None) };
+    match materials_of(path, mesh, args.max_memory) {
+        Ok((textured, notes)) => {
+            say(path, &notes, terminal);
+            Ok(Some(textured))
+        }
+        Err(failure) if args.packs.is_empty() => Err(failure),
+        Err(failure) => {
+            terminal.warn(&format!("{}; its materials are left out", failure.message));
+            Ok(None)
+        }
+    }
+}
+
+/// Says what the user should know of a file.
+fn say(path: &Path, notes: &[String], terminal: Terminal) {
+    notes.iter().for_each(|note| terminal.say(&format!("{}: {note}", path.display())));
+}
+
+fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension))
 }
 
 fn entry_name(shown: &Subject) -> String {
@@ -178,7 +221,7 @@ fn list(gpu: &Gpu, subjects: &Subjects) -> String {
     for shown in &subjects.shown {
         // What an environment shows is what lights the scene.
         let environment = subjects.environment.as_ref().filter(|_| shown.method == Method::Environment);
-        let bytes = environment.unwrap_or(&shown.data).bytes;
+        let bytes = environment.map_or_else(|| shown.bytes(), |environment| environment.bytes);
         text.push_str(&format!("{}  {bytes} bytes on the GPU\n", entry_name(shown)));
     }
     text
@@ -189,7 +232,7 @@ fn find(list: &[Subject], flag: &str, name: &str) -> Result<usize, Failure> {
     let fits = |shown: &Subject| entry_name(shown) == name || shown.method.name() == name;
     list.iter().position(fits).ok_or_else(|| {
         let names: Vec<String> = list.iter().map(entry_name).collect();
-        Failure::usage(format!("{flag} '{name}': the packs have no such entry; there is {}", names.join(", ")))
+        Failure::usage(format!("{flag} '{name}': there is no such entry; there is {}", names.join(", ")))
     })
 }
 
@@ -205,6 +248,12 @@ fn settings(args: &Args, list: &[Subject], camera: Orbit, placement: Option<Plac
     settings.against = match args.view.against.as_deref() {
         None => Against::Nothing,
         Some("reference") => Against::Reference,
+        Some("baseline") => {
+            let shown = &list[settings.shown];
+            let found = baseline_of(list, settings.shown);
+            let none = || Failure::usage(format!("--against baseline: {} has none", shown.method.name()));
+            Against::Other(found.ok_or_else(none)?)
+        }
         Some(name) => Against::Other(find(list, "--against", name)?),
     };
     settings.layout = match args.view.compare {

@@ -40,6 +40,7 @@ fn main() -> ExitCode {
                 name: String::new(),
                 method,
                 data: Rc::new(data),
+                parts: Vec::new(),
                 material,
                 files: Vec::new(),
                 constants: Vec::new(),

@@ -35,6 +35,9 @@ pub enum GpuError {
     /// A section is not what it should be.
     #[error("{0}")]
     BadPack(String),
+    /// The device does not hold what is to be shown.
+    #[error("{0}")]
+    TooLarge(String),
 }
 
 /// Which adapter is wanted.

@@ -53,7 +53,7 @@ pub struct Resources {
     pub layout: wgpu::BindGroupLayout,
     /// The group.
     pub group: wgpu::BindGroup,
-    /// Bytes of the sections of a pack among them.
+    /// Bytes of what is shown among them: the sections of a pack, or the images that no other group had before.
     pub bytes: u64,
     /// The sections of a pack among them, in the order of bindings.
     pub sections: Vec<(FourCc, BoundSection)>,
@@ -142,11 +142,35 @@ impl ResourceSet {
         self
     }
 
+    /// Adds all of a texture that other groups may have too, to be sampled.
+    pub fn sampled(&mut self, texture: &wgpu::Texture) -> &mut Self {
+        self.push(
+            wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            Resource::Texture(texture.create_view(&wgpu::TextureViewDescriptor::default())),
+        );
+        self
+    }
+
+    /// Counts bytes of what is shown that are no section.
+    pub fn add_bytes(&mut self, bytes: usize) -> &mut Self {
+        self.bytes += bytes as u64;
+        self
+    }
+
     /// Adds a sampler that filters between texels and mips; it repeats or clamps.
     pub fn sampler(&mut self, gpu: &Gpu, address: wgpu::AddressMode) -> &mut Self {
+        self.sampler_of(gpu, [address; 2])
+    }
+
+    /// The same with what lies beyond the edges along u and v.
+    pub fn sampler_of(&mut self, gpu: &Gpu, [u, v]: [wgpu::AddressMode; 2]) -> &mut Self {
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-            address_mode_u: address,
-            address_mode_v: address,
+            address_mode_u: u,
+            address_mode_v: v,
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
             mipmap_filter: wgpu::MipmapFilterMode::Linear,

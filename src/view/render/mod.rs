@@ -14,7 +14,7 @@ mod uniforms;
 pub use picture::{Picture, picture, read_picture};
 pub use present::{Display, Overlay, ToneMapping};
 pub use renderer::{Compare, Renderer, Side, View};
-pub use subject::{LightKind, Method, Subject};
+pub use subject::{LightKind, Method, Subject, baseline_of};
 pub use uniforms::{
     ACCURATE, Camera, Environment, Lights, MAX_POINT_LIGHTS, Material, PointLight, RectLight, SWAP_LAYERS, Scene, Sun,
 };

@@ -11,6 +11,7 @@ use crate::gpu::{Gpu, GpuError, ResourceSet, Resources, read_back};
 use crate::methods::environment;
 use crate::scene::Mesh;
 use glam::Vec2;
+use std::ops::Range;
 use std::rc::Rc;
 
 /// One of the pictures that are compared.
@@ -76,6 +77,7 @@ struct MeshBuffers {
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
     count: u32,
+    parts: Vec<Range<u32>>,
 }
 
 /// Draws views.
@@ -244,7 +246,15 @@ impl Renderer {
         pass.set_bind_group(2, &self.environment.group, &[]);
         pass.set_vertex_buffer(0, self.mesh.vertices.slice(..));
         pass.set_index_buffer(self.mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..self.mesh.count, 0, 0..1);
+        if side.shown.parts.is_empty() {
+            pass.draw_indexed(0..self.mesh.count, 0, 0..1);
+        } else {
+            // A mesh that has more parts is another one than the data were made for.
+            for (index, part) in self.mesh.parts.iter().enumerate() {
+                pass.set_bind_group(1, &side.shown.parts.get(index).unwrap_or(data).group, &[]);
+                pass.draw_indexed(part.clone(), 0, 0..1);
+            }
+        }
         pass.set_pipeline(background);
         pass.set_bind_group(1, &self.nothing.group, &[]);
         pass.draw(0..3, 0..1);
@@ -326,10 +336,16 @@ pub(super) fn texture_bytes(gpu: &Gpu, texture: &wgpu::Texture, texel_bytes: u32
 }
 
 fn mesh_buffers(gpu: &Gpu, mesh: &Mesh) -> MeshBuffers {
+    let count = mesh.indices.len() as u32;
+    let mut parts: Vec<Range<u32>> = mesh.parts.iter().map(|part| part.first..part.first + part.count).collect();
+    if parts.is_empty() {
+        parts.push(0..count);
+    }
     MeshBuffers {
         vertices: gpu.buffer(wgpu::BufferUsages::VERTEX, bytemuck::cast_slice(&mesh.vertices)),
         indices: gpu.buffer(wgpu::BufferUsages::INDEX, bytemuck::cast_slice(&mesh.indices)),
-        count: mesh.indices.len() as u32,
+        count,
+        parts,
     }
 }
 

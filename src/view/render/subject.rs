@@ -36,6 +36,10 @@ pub enum Method {
     AreaLight,
     /// The same normals with one roughness everywhere: plain LTC.
     PlainLtc,
+    /// Materials as textures with mips, which any engine draws.
+    Textures,
+    /// The same with mips that an engine makes of the finest level.
+    PlainTextures,
 }
 
 /// What is known of a method.
@@ -57,6 +61,8 @@ impl Method {
         Method::Environment,
         Method::AreaLight,
         Method::PlainLtc,
+        Method::Textures,
+        Method::PlainTextures,
     ];
 
     fn facts(self) -> Facts {
@@ -84,6 +90,12 @@ impl Method {
                 Facts { name: "area-light", light: LightKind::Rect, baseline: Some(Method::PlainLtc), has_map: true }
             }
             Method::PlainLtc => Facts { name: "plain-ltc", light: LightKind::Rect, baseline: None, has_map: true },
+            Method::Textures => {
+                Facts { name: "textures", light: LightKind::Sun, baseline: Some(Method::PlainTextures), has_map: true }
+            }
+            Method::PlainTextures => {
+                Facts { name: "plain-textures", light: LightKind::Sun, baseline: None, has_map: true }
+            }
         }
     }
 
@@ -131,6 +143,8 @@ pub struct Subject {
     pub method: Method,
     /// Group 1.
     pub data: Rc<Resources>,
+    /// Group 1 of each part of the mesh that it was made for; none where `data` is that of all.
+    pub parts: Vec<Rc<Resources>>,
     /// Parameters.
     pub material: Material,
     /// Files of the program that follow from the data: one of each group of [`glint_shaders::CHOICES`].
@@ -142,6 +156,14 @@ pub struct Subject {
 }
 
 impl Subject {
+    /// Bytes of its data on the GPU.
+    pub fn bytes(&self) -> u64 {
+        let mut all: Vec<&Rc<Resources>> = self.parts.iter().chain([&self.data]).collect();
+        all.sort_by_key(|data| Rc::as_ptr(data));
+        all.dedup_by(|a, b| Rc::ptr_eq(a, b));
+        all.iter().map(|data| data.bytes).sum()
+    }
+
     /// All pipeline constants of its program for a material.
     pub(super) fn pipeline_constants(&self, material: &Material) -> Vec<(&'static str, f64)> {
         let mut constants = self.constants.clone();
@@ -151,6 +173,13 @@ impl Subject {
         }
         constants
     }
+}
+
+/// Index of what entry `index` of a list is compared with: the baseline of its method, of the same material; none where it has none.
+pub fn baseline_of(list: &[Subject], index: usize) -> Option<usize> {
+    let shown = &list[index];
+    let method = shown.method.baseline()?;
+    list.iter().position(|other| other.method == method && (other.name == shown.name || method == Method::Smooth))
 }
 
 /// A pipeline constant that is a switch.

@@ -1,6 +1,6 @@
 //! From the corners of triangles, as files have them, to vertices with all that a viewer needs.
 
-use super::mesh::{Bounds, Mesh, Vertex};
+use super::mesh::{Bounds, Look, Mesh, MeshPart, Vertex};
 use super::shapes::SIDES;
 use super::tangents;
 use glam::{Vec2, Vec3, Vec4};
@@ -37,6 +37,7 @@ pub(super) struct Part {
     /// Numbers of corners, three a triangle.
     pub order: Vec<u32>,
     pub missing: MissingNormals,
+    pub look: Look,
 }
 
 /// What a file holds: lists of triangles, and what the user should know about how they were read.
@@ -73,6 +74,11 @@ impl Part {
         let normals = self.normals(&mut mesh.notes);
         let uv = self.uv(whole, &mut mesh.notes);
         let tangents = self.tangents(&normals, &uv, &mut mesh.notes);
+        let (first, count) = (mesh.indices.len() as u32, self.order.len() as u32);
+        match mesh.parts.last_mut().filter(|last| last.look == self.look) {
+            Some(last) => last.count += count,
+            None => mesh.parts.push(MeshPart { first, count, look: self.look }),
+        }
         let first = mesh.vertices.len() as u32;
         let mut known: HashMap<[u32; 12], u32> = HashMap::with_capacity(self.corners.len());
         for (i, corner) in self.in_order().enumerate() {

@@ -1,5 +1,5 @@
 //! glTF 2.0, as GLB (specification, section 4.4) or as JSON with buffers beside or inside it: the triangles of the default
-//! scene. Of materials only the uv of their textures are read; skins and animations are passed over.
+//! scene, and which material each has. Of materials only the uv of their textures are read; skins and animations are passed over.
 //!
 //! The gltf crate is not used: 1.4 panics where a primitive's POSITION names an accessor that is not there, and refuses
 //! files that require extensions of materials, which a viewer of geometry can pass over.
@@ -8,7 +8,7 @@ use super::accessor::{MAX_COUNT, Source};
 use super::assemble::{Corner, MissingNormals, Part, Parts};
 use super::document::{Document, Node, Primitive};
 use super::fault::{Fault, without_mark};
-use super::mesh::{MAX_FILE_BYTES, MAX_TRIANGLES};
+use super::mesh::{Look, MAX_FILE_BYTES, MAX_TRIANGLES};
 use super::{texture, uri};
 use glam::{Mat3, Mat4, Quat, Vec2, Vec3, Vec4};
 use std::path::Path;
@@ -261,7 +261,8 @@ impl Walk<'_> {
         let place_of = |index: u32| used.binary_search(&index).unwrap_or_default() as u32;
         let corners: Vec<Corner> = used.iter().map(corner).collect();
         corners.iter().try_for_each(Corner::check).map_err(Fault::Bad)?;
-        let mut part = Part { corners, order: Vec::new(), missing: MissingNormals::Flat };
+        let look = Look { material: primitive.material, uv_set: place.set, uv: place.affine() };
+        let mut part = Part { corners, order: Vec::new(), missing: MissingNormals::Flat, look };
         for [a, b, c] in triangles(&order, mode) {
             if a != b && b != c && c != a {
                 let (b, c) = if side < 0.0 { (c, b) } else { (b, c) };

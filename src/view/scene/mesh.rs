@@ -1,7 +1,7 @@
 //! Triangles with a tangent frame, as `view_surface.wgsl` reads them.
 
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use glam::{Affine2, Vec3};
 
 /// Largest mesh file, and largest sum of the buffers of a glTF file.
 pub const MAX_FILE_BYTES: u64 = 512 << 20;
@@ -32,8 +32,32 @@ pub struct Mesh {
     pub vertices: Vec<Vertex>,
     /// Three a triangle, counter-clockwise from outside.
     pub indices: Vec<u32>,
+    /// Which indices are drawn with which of the file's materials, in order; none where all are without one.
+    pub parts: Vec<MeshPart>,
     /// What the user should know: what the file lacked and was made up for.
     pub notes: Vec<String>,
+}
+
+/// Triangles that follow each other and look alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshPart {
+    /// Number of the first index.
+    pub first: u32,
+    /// How many indices there are, three a triangle.
+    pub count: u32,
+    /// What is drawn on them.
+    pub look: Look,
+}
+
+/// The material of a part, and where on its textures a vertex lies.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Look {
+    /// Number of the file's material; none where the file names none.
+    pub material: Option<usize>,
+    /// Set of the file's texture coordinates that [`Vertex::uv`] are made of.
+    pub uv_set: u32,
+    /// What they are made by: texture coordinates of that set to [`Vertex::uv`].
+    pub uv: Affine2,
 }
 
 /// A box along the axes.

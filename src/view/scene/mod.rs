@@ -18,4 +18,4 @@ mod uri;
 
 pub use camera::{CameraTextError, Orbit, Placement};
 pub use load::MeshError;
-pub use mesh::{Bounds, MAX_FILE_BYTES, MAX_TRIANGLES, MAX_VERTICES, Mesh, Vertex};
+pub use mesh::{Bounds, Look, MAX_FILE_BYTES, MAX_TRIANGLES, MAX_VERTICES, Mesh, MeshPart, Vertex};

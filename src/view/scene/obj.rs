@@ -5,7 +5,7 @@
 use super::accessor::MAX_COUNT;
 use super::assemble::{Corner, MissingNormals, Part, Parts};
 use super::fault::{Fault, without_mark};
-use super::mesh::MAX_TRIANGLES;
+use super::mesh::{Look, MAX_TRIANGLES};
 use super::polygon::{Cut, MAX_STEPS, cut};
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
@@ -75,7 +75,8 @@ impl Seen {
 /// The triangles in the bytes of a file; polygons are cut. v points up in OBJ and down here, so it is turned.
 pub(super) fn read(bytes: &[u8]) -> Result<Parts, Fault> {
     let mut lists = Lists::default();
-    let mut part = Part { corners: Vec::new(), order: Vec::new(), missing: MissingNormals::Smooth };
+    let (corners, order, look) = (Vec::new(), Vec::new(), Look::default());
+    let mut part = Part { corners, order, missing: MissingNormals::Smooth, look };
     let (mut polygon, mut points, mut triangles, mut steps) = (Vec::new(), Vec::new(), Vec::new(), MAX_STEPS);
     let (mut fans, mut free_form, mut unknown) = (Seen::default(), Seen::default(), Seen::default());
     for (line, text) in statements(without_mark(bytes)?) {

@@ -77,6 +77,6 @@ fn quad(right: Vec3, down: Vec3) -> Mesh {
     Mesh {
         vertices: vec![corner(0.0, 0.0), corner(0.0, 1.0), corner(1.0, 1.0), corner(1.0, 0.0)],
         indices: vec![0, 1, 2, 0, 2, 3],
-        notes: Vec::new(),
+        ..Mesh::default()
     }
 }

@@ -1,7 +1,7 @@
 //! Where on the normal map a vertex lies: the set of uv that a material's textures name, and KHR_texture_transform.
 
 use super::document::{Material, TextureInfo, TextureTransform};
-use glam::{Mat2, Vec2};
+use glam::{Affine2, Mat2, Vec2};
 
 /// A set of uv and what is done to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +30,12 @@ impl Place {
         let (sin, cos) = rotation.sin_cos();
         let turn = Mat2::from_cols(Vec2::new(cos, -sin), Vec2::new(sin, cos));
         turn * (Vec2::from(scale) * uv) + Vec2::from(offset)
+    }
+
+    /// The same as a matrix.
+    pub fn affine(&self) -> Affine2 {
+        let [u, v] = [Vec2::X, Vec2::Y].map(|axis| self.apply(axis) - self.apply(Vec2::ZERO));
+        Affine2::from_cols(u, v, self.apply(Vec2::ZERO))
     }
 
     /// Whether the directions of u and v on the surface change.

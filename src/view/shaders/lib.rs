@@ -44,6 +44,7 @@ const OWN: &[Shader] = &[
     own!("bind_lobes"),
     own!("query_lobes"),
     own!("query_surface"),
+    own!("bind_textures"),
     own!("view_scene"),
     own!("view_surface"),
     own!("view_sky"),
@@ -64,6 +65,9 @@ const OWN: &[Shader] = &[
     own!("shade_lobes"),
     own!("shade_surface"),
     own!("shade_rect_points"),
+    own!("shade_mirror"),
+    own!("shade_textures_brdf"),
+    own!("shade_textures"),
 ];
 
 /// Every WGSL file: the run time, then the viewer's own.
@@ -81,14 +85,19 @@ pub type Program = (&'static str, &'static [&'static str]);
 
 /// Programs that shade a surface, by method.
 pub const SHADING: &[Program] = &[
-    ("smooth", &["view_surface", "shade_smooth", "shade_rect_points", "shade_environment_smooth"]),
-    ("dictionary", &["view_surface", "shade_dictionary", "shade_rect_points", "shade_environment_smooth"]),
-    ("ndf-maps", &["view_surface", "shade_ndf_maps", "shade_rect_points", "shade_environment_smooth"]),
-    ("lobes", &["view_surface", "shade_lobes", "shade_rect_points", "shade_environment_smooth"]),
-    ("surface", &["view_surface", "shade_surface", "shade_rect_points", "shade_environment_smooth"]),
-    ("environment", &["view_surface", "shade_environment", "shade_rect_points"]),
-    ("area-light", &["view_surface", "shade_area_light", "shade_environment_smooth"]),
-    ("plain-ltc", &["view_surface", "shade_plain_ltc", "shade_environment_smooth"]),
+    ("smooth", &["view_surface", "shade_smooth", "shade_rect_points", "shade_environment_smooth", "shade_mirror"]),
+    (
+        "dictionary",
+        &["view_surface", "shade_dictionary", "shade_rect_points", "shade_environment_smooth", "shade_mirror"],
+    ),
+    ("ndf-maps", &["view_surface", "shade_ndf_maps", "shade_rect_points", "shade_environment_smooth", "shade_mirror"]),
+    ("lobes", &["view_surface", "shade_lobes", "shade_rect_points", "shade_environment_smooth", "shade_mirror"]),
+    ("surface", &["view_surface", "shade_surface", "shade_rect_points", "shade_environment_smooth", "shade_mirror"]),
+    ("environment", &["view_surface", "shade_environment", "shade_rect_points", "shade_mirror"]),
+    ("area-light", &["view_surface", "shade_area_light", "shade_environment_smooth", "shade_mirror"]),
+    ("plain-ltc", &["view_surface", "shade_plain_ltc", "shade_environment_smooth", "shade_mirror"]),
+    ("textures", &["view_surface", "shade_textures", "shade_rect_points"]),
+    ("plain-textures", &["view_surface", "shade_textures", "shade_rect_points"]),
 ];
 
 /// Files of which a method takes one of each group, as its pack stores data; the first where it is all the same.

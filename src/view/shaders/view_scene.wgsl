@@ -9,6 +9,10 @@
 //       radiance towards the viewer from the scene's rectangle; shade_rect_points.wgsl does it by samples of shade_reflect
 //   fn shade_environment(point: ViewPoint) -> vec3f
 //       radiance towards the viewer from the environment; shade_environment_smooth.wgsl does it without glints
+//   fn shade_room(point: ViewPoint) -> vec3f
+//       radiance towards the viewer from the room of view_sky.wgsl; shade_mirror.wgsl has it for surfaces without materials of their own
+//   fn shade_emitted(point: ViewPoint) -> vec3f
+//       radiance that the surface emits; asked for where EMITS says so
 //   fn shade_lod(point: ViewPoint) -> f32
 //       level of detail that is read, 0 the finest
 

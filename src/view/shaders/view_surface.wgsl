@@ -1,8 +1,6 @@
 // Draws a mesh: the pixel's point, the lights, and the method between them.
 
 #import view_scene
-#import view_sky
-#import brdf
 #import hash
 #import bind_loads
 
@@ -15,6 +13,8 @@ const VIEW_OVERLAY_OPERATIONS: u32 = 4u;
 override LIGHTS: u32 = 1u;
 // One sample of the reference instead of the method.
 override REFERENCE: bool = false;
+// Whether the surface emits light.
+override EMITS: bool = false;
 // What goes into alpha: 0 nothing, else one of the above.
 override OVERLAY: u32 = 0u;
 
@@ -93,8 +93,10 @@ fn fragment(f: ViewFragment, @builtin(front_facing) front: bool) -> @location(0)
         radiance += shade_environment(point);
     }
     if (LIGHTS & VIEW_LIGHT_ROOM) != 0u {
-        let mirrored = view_to_world(point, vec3f(-point.view.xy, point.view.z));
-        radiance += glint_fresnel(material.f0, point.view.z) * view_sky(mirrored);
+        radiance += shade_room(point);
+    }
+    if EMITS {
+        radiance += shade_emitted(point);
     }
     var overlay = 0.0;
     if OVERLAY == VIEW_OVERLAY_FOOTPRINT {

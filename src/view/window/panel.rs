@@ -142,6 +142,7 @@ fn parameters(ui: &mut Ui, method: Method, material: &mut Material) {
             base_roughness(ui, material);
             texels(ui, material);
         }
+        Method::Textures | Method::PlainTextures => texels(ui, material),
     }
 }
 

@@ -169,6 +169,7 @@ mod tests {
                 name: String::new(),
                 method: Method::Smooth,
                 data,
+                parts: Vec::new(),
                 material: Material::default(),
                 files: Vec::new(),
                 constants: Vec::new(),

@@ -5,7 +5,8 @@ use glint_shaders::{CHOICES, PASSES, SHADING, compose, modules, program};
 use naga::valid::{ValidationFlags, Validator};
 
 /// Hooks that a shading program must have once, see view_scene.wgsl.
-const HOOKS: [&str; 5] = ["shade_reflect", "shade_reference", "shade_rect", "shade_environment", "shade_lod"];
+const HOOKS: [&str; 7] =
+    ["shade_reflect", "shade_reference", "shade_rect", "shade_environment", "shade_room", "shade_emitted", "shade_lod"];
 
 /// Panics with what is wrong and where.
 fn check(what: &str, source: &str) {

@@ -11,3 +11,4 @@ mod lobes;
 mod ndf_maps;
 mod support;
 mod surface;
+mod textures;

@@ -1,6 +1,6 @@
 //! A pack of each method, baked small, on the GPU; and a wall in its light.
 
-use glam::Vec3;
+use glam::{Affine2, Vec3};
 use glint_bake_core::area_light::{self, AreaLightOptions};
 use glint_bake_core::dictionary::{self, DictionaryOptions, quality};
 use glint_bake_core::environment::image::{EnvironmentImage, direction as direction_at};
@@ -13,14 +13,20 @@ use glint_bake_core::normal_map::NormalMap;
 use glint_bake_core::progress::Silent;
 use glint_bake_core::surface;
 use glint_bake_core::synthesis::{SynthesisOptions, Target};
+use glint_bake_core::textures::{self, Level, Roughness, TexturesOptions};
 use glint_formats::Wrap;
 use glint_formats::{Codec, Limits, Pack, PackBuilder, Section};
 use glint_view::gpu::Gpu;
+use glint_view::methods::textures::{Edge, ImageFormat, MipImage, Texture, Textured, TexturedMaterial};
 use glint_view::render::{Camera, Method, Renderer, View, picture};
 use glint_view::scene::{Mesh, Orbit};
 use glint_view::settings::Settings;
 use glint_view::subjects::Subjects;
+use std::rc::Rc;
 use std::sync::OnceLock;
+
+/// Perceptual roughness of the textured material.
+const ROUGHNESS: f32 = 0.4;
 
 fn pack(sections: Vec<Section>) -> Pack {
     let mut builder = PackBuilder::new();
@@ -109,9 +115,52 @@ pub fn packs() -> &'static [Pack] {
     })
 }
 
+/// The waves as textures: their filtered normals and roughness, and what an engine makes of the finest of them.
+fn textured() -> Textured {
+    let map = map(64, 64);
+    let baked = textures::bake(&map, &Roughness::Constant(ROUGHNESS), &TexturesOptions::default(), &Silent).unwrap();
+    let normal =
+        |&[x, y]: &[f32; 2]| [0.5 + 0.5 * x, 0.5 + 0.5 * y, 0.5 + 0.5 * (1.0 - x * x - y * y).max(0.0).sqrt(), 1.0];
+    let rough = |alpha: &f32| [1.0, alpha.sqrt(), 1.0, 1.0];
+    let finest: Vec<[f32; 4]> = map.projected.iter().map(normal).collect();
+    let flat = vec![[1.0, ROUGHNESS, 1.0, 1.0]; finest.len()];
+    let mut plain = vec![finest.clone()];
+    while plain[plain.len() - 1].len() > 1 {
+        plain.push(halved(&plain[plain.len() - 1]));
+    }
+    let levels = |first, of: &dyn Fn(&Level) -> Vec<[f32; 4]>| {
+        let mips: Vec<Vec<[f32; 4]>> = [first].into_iter().chain(baked.levels.iter().map(of)).collect();
+        image(&mips)
+    };
+    let texture = |image, plain| Some(Texture { image, plain, edges: [Edge::Repeat; 2], uv: Affine2::IDENTITY });
+    let normals = texture(levels(finest, &|level| level.normals.iter().map(normal).collect()), image(&plain));
+    let roughness = texture(levels(flat.clone(), &|level| level.alphas.iter().map(rough).collect()), image(&[flat]));
+    let material = TexturedMaterial { textures: [None, normals, roughness, None, None], ..TexturedMaterial::default() };
+    Textured { name: "waves".to_owned(), materials: vec![material], parts: Vec::new() }
+}
+
+/// Means of 2 × 2 texels of a square.
+fn halved(texels: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    let side = texels.len().isqrt();
+    let mean = |i: usize, j: usize| {
+        let of = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(di, dj)| texels[(2 * j + dj) * side + 2 * i + di]);
+        [0, 1, 2, 3].map(|c| of.iter().map(|texel| texel[c]).sum::<f32>() / 4.0)
+    };
+    (0..side / 2).flat_map(|j| (0..side / 2).map(move |i| (i, j))).map(|(i, j)| mean(i, j)).collect()
+}
+
+/// A square image in 8 bits.
+fn image(mips: &[Vec<[f32; 4]>]) -> Rc<MipImage> {
+    let byte = |value: &f32| (value * 255.0).round() as u8;
+    let bytes = |mip: &Vec<[f32; 4]>| mip.as_flattened().iter().map(byte).collect();
+    let side = mips[0].len().isqrt() as u32;
+    Rc::new(MipImage { format: ImageFormat::Linear8, size: [side; 2], mips: mips.iter().map(bytes).collect() })
+}
+
 /// Subjects of every method.
 pub fn subjects(gpu: &Gpu) -> Subjects {
-    let subjects = Subjects::of_packs(gpu, &packs().iter().collect::<Vec<_>>(), &[]).unwrap();
+    let mut subjects = Subjects::of_packs(gpu, &packs().iter().collect::<Vec<_>>(), &[]).unwrap();
+    subjects.add_textures(gpu, &textured()).unwrap();
     for method in Method::ALL {
         assert!(subjects.shown.iter().any(|shown| shown.method == *method), "{} is not shown", method.name());
     }

@@ -1,7 +1,8 @@
 //! uv of glTF files as the normal texture has them: sets, transforms, integers.
 
 use crate::support::{assert_sound, container, data, glb, load, share_of_true_frames};
-use glint_view::scene::Mesh;
+use glam::Vec2;
+use glint_view::scene::{Look, Mesh};
 use serde_json::json;
 
 /// What a primitive is made of; numbers are floats in the file.
@@ -92,6 +93,26 @@ fn each_primitive_has_its_own_set_and_transform() {
     let mesh = load("a.glb", &file(&primitives, materials)).unwrap();
     let scaled = |uv: [f32; 6], by: f32| [[uv[0] * by, uv[1] * by], [uv[2] * by, uv[3] * by], [uv[4] * by, uv[5] * by]];
     assert_uv(&mesh, &[scaled(other, 1.0), scaled(UV, 3.0), scaled(other, 4.0), scaled(UV, 1.0)].concat());
+}
+
+/// Parts follow materials and places of textures, and say what uv were made of.
+#[test]
+fn parts_have_their_materials() {
+    let scaled = transformed(json!({"texCoord": 1}), json!({"scale": [2, 4], "offset": [0.5, 0]}));
+    let materials = json!([{}, {"normalTexture": scaled}]);
+    let sets: &[(&'static str, [f32; 6])] = &[("TEXCOORD_0", UV), ("TEXCOORD_1", UV)];
+    let primitives = [0, 0, 1].map(|material| triangle(sets, material));
+    let mesh = load("a.glb", &file(&primitives, materials)).unwrap();
+    let ranges: Vec<(u32, u32)> = mesh.parts.iter().map(|part| (part.first, part.count)).collect();
+    assert_eq!(ranges, [(0, 6), (6, 3)], "neighbours that look alike are one part");
+    let [plain, other] = [mesh.parts[0].look, mesh.parts[1].look];
+    assert_eq!(plain, Look { material: Some(0), ..Look::default() });
+    assert_eq!((other.material, other.uv_set), (Some(1), 1));
+    let made = other.uv.transform_point2(Vec2::new(1.0, 1.0));
+    assert!(made.distance(Vec2::new(2.5, 4.0)) < 1e-6, "{made}");
+    let glb = load("b.glb", &glb(|json| json)).unwrap();
+    assert_eq!(glb.parts[0].look.material, None);
+    assert!(Mesh::sphere(2).parts.is_empty());
 }
 
 #[test]
