@@ -5,7 +5,9 @@
 
 use super::atlas;
 use super::baked::{BakedNdfMaps, Material};
-use super::fine_grid::{FineGrid, LobeNorm, micro_normals};
+use super::fine_grid::{FineGrid, Plan, step_length};
+use super::lobe_norm::LobeNorm;
+use super::normal_bins::{NormalBins, Parts, parts_per_texel};
 use super::options::{NdfMapsOptions, Options, WORST_OF_MEAN};
 use super::placement;
 use super::table_fit::{FittedTable, fit_node};
@@ -17,6 +19,7 @@ use crate::quality::metrics::Summary;
 use glint_formats::Wrap;
 use glint_formats::ndf_maps::{Level, MeasuredError, NdfMapsParams, NodeRecord};
 use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Part of the error asked for that the bake uses up: its fine grid agrees with the exact integral to a few per cent of
 /// the error that it measures.
@@ -40,13 +43,12 @@ pub fn bake_maps(map: &NormalMap, options: &NdfMapsOptions, progress: &dyn Progr
     let map = &repeating(map);
     let levels = levels(map.width, map.height, options.finest_window);
     let windows = windows(map, &levels, options.finest_window * options.finest_window);
-    let norm = LobeNorm::new(options.roughness);
-    let normals = micro_normals(map, options.roughness);
+    let nodes = Nodes::new(map, &windows, options.roughness);
     progress.begin("NDF maps", windows.len() as u64);
-    let candidates: Vec<Vec<FittedTable>> = windows
-        .par_iter()
-        .map(|window| {
-            let tables = fit_node(&FineGrid::new(&normals, window, options.roughness, &norm), options.max_error);
+    let candidates: Vec<Vec<FittedTable>> = (0..windows.len())
+        .into_par_iter()
+        .map(|node| {
+            let tables = fit_node(&nodes.fine_grid(node), options.max_error);
             progress.advance(1);
             tables
         })
@@ -86,6 +88,39 @@ pub fn bake_maps(map: &NormalMap, options: &NdfMapsOptions, progress: &dyn Progr
         atlas: atlas.texels,
         normals: map.projected.iter().map(|s| s.map(snorm)).collect(),
     })
+}
+
+/// What the nodes' fine grids are made of.
+struct Nodes {
+    roughness: f64,
+    /// Parts along a texel, and the plan of the fine grid, a node.
+    plans: Vec<(u32, Plan)>,
+    /// Bins by parts along a texel and steps between their points.
+    bins: BTreeMap<(u32, u32), NormalBins>,
+}
+
+impl Nodes {
+    fn new(map: &NormalMap, windows: &[Window], roughness: f64) -> Nodes {
+        let sizes: BTreeSet<u32> = windows.iter().map(parts_per_texel).collect();
+        let parts: BTreeMap<u32, Parts> = sizes.into_iter().map(|n| (n, Parts::new(map, n))).collect();
+        let plan = |window: &Window| {
+            let per_texel = parts_per_texel(window);
+            (per_texel, Plan::new(&parts[&per_texel], window, roughness))
+        };
+        let plans: Vec<(u32, Plan)> = windows.par_iter().map(plan).collect();
+        let wanted: BTreeSet<(u32, u32)> = plans.iter().map(|(per_texel, plan)| (*per_texel, plan.step)).collect();
+        let norm = LobeNorm::new(roughness);
+        let bins = |key: (u32, u32)| {
+            let spacing = f64::from(key.1) * step_length(roughness);
+            (key, NormalBins::new(&parts[&key.0], spacing, roughness, &norm))
+        };
+        Nodes { roughness, plans, bins: wanted.into_iter().map(bins).collect() }
+    }
+
+    fn fine_grid(&self, node: usize) -> FineGrid {
+        let (per_texel, plan) = &self.plans[node];
+        FineGrid::new(plan, &self.bins[&(*per_texel, plan.step)], self.roughness)
+    }
 }
 
 /// The map as copies of it lie on a surface, side by side: beyond its edge is the other one.

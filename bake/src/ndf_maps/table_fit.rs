@@ -6,7 +6,7 @@
 //! texels along each axis as the error asked for allows.
 
 use super::fine_grid::FineGrid;
-use super::hats::{Fit, add_scaled, square_integral};
+use super::hats::{Fit, square_integral};
 use multiversion::multiversion;
 use std::ops::Range;
 
@@ -52,15 +52,36 @@ struct Core<'a> {
     lost: f64,
     /// Roots of densities inside, row-major.
     roots: Vec<f32>,
+    /// Sum of the densities at points in the disk.
+    total: f64,
+}
+
+impl<'a> Core<'a> {
+    fn new(fine: &'a FineGrid, cut: f64) -> Core<'a> {
+        let ([columns, rows], lost) = fine.core(cut);
+        let lines = rows.clone().flat_map(|j| &fine.density[j * fine.width..][columns.clone()]);
+        let roots = lines.map(|v| v.max(0.0).sqrt()).collect();
+        let mut core = Core { fine, columns, rows, lost, roots, total: 0.0 };
+        for j in core.rows.clone() {
+            let inside = core.columns_inside(j - core.rows.start);
+            let row = &fine.density[j * fine.width + core.columns.start..][inside];
+            core.total += row.iter().map(|v| f64::from(*v)).sum::<f64>();
+        }
+        core
+    }
+
+    /// Columns, of the core, of its row `j` whose points lie in the disk; may be none.
+    fn columns_inside(&self, j: usize) -> Range<usize> {
+        let Some(inside) = self.fine.columns_inside(self.rows.start + j) else { return 0..0 };
+        let within = |i: usize| i.clamp(self.columns.start, self.columns.end) - self.columns.start;
+        within(inside.start)..within(inside.end)
+    }
 }
 
 /// Fits one node at spacings around the one that has the error asked for: candidates to choose from, of which the
 /// first is the most accurate.
 pub(super) fn fit_node(fine: &FineGrid, max_error: f64) -> Vec<FittedTable> {
-    let ([columns, rows], lost) = fine.core(CUT_OF_ERROR * max_error);
-    let lines = rows.clone().flat_map(|j| &fine.density[j * fine.width..][columns.clone()]);
-    let roots = lines.map(|v| v.max(0.0).sqrt()).collect();
-    let core = Core { fine, columns, rows, lost, roots };
+    let core = Core::new(fine, CUT_OF_ERROR * max_error);
     let mut candidates = Candidates { lines: LineFits::new(&core), tried: Vec::new() };
     // The finest spacing that eight bits hold.
     let longest = core.columns.len().max(core.rows.len());
@@ -180,56 +201,48 @@ fn quantise(values: &mut [f32]) -> Vec<u8> {
 fn error(core: &Core<'_>, roots: &[f32], width: usize, spacing: [usize; 2], scale: f32) -> f64 {
     // Spread every row of roots over the fine columns, then blend two such rows for every fine row.
     let count = core.columns.len();
-    let part = |k: usize, spacing: usize| (k / spacing, (k % spacing) as f32 / spacing as f32);
-    let mut spread = vec![0.0f32; roots.len() / width * count];
+    let rows = roots.len() / width;
+    // One more row of zeros, which lie beyond the last.
+    let mut spread = vec![0.0f32; (rows + 1) * count];
     let mut padded = vec![0.0f32; width + 1];
     for (row, spread) in roots.chunks_exact(width).zip(spread.chunks_exact_mut(count)) {
         padded[..width].copy_from_slice(row);
-        for (i, out) in spread.iter_mut().enumerate() {
-            let (at, f) = part(i, spacing[0]);
-            *out = padded[at] + (padded[at + 1] - padded[at]) * f;
-        }
-    }
-    let mut decoded = vec![0.0f32; count];
-    let (mut difference, mut total) = (0.0f64, 0.0f64);
-    for j in 0..core.rows.len() {
-        let Some(inside) = core.fine.columns_inside(core.rows.start + j) else { continue };
-        let inside = inside.start.max(core.columns.start)..inside.end.min(core.columns.end);
-        if inside.is_empty() {
-            continue;
-        }
-        let (at, f) = part(j, spacing[1]);
-        decoded.fill(0.0);
-        for (row, weight) in [(at, 1.0 - f), (at + 1, f)] {
-            if let Some(source) = spread.get(row * count..(row + 1) * count) {
-                add_scaled(&mut decoded, source, weight);
+        for (ends, between) in padded.windows(2).zip(spread.chunks_mut(spacing[0])) {
+            for (k, out) in between.iter_mut().enumerate() {
+                *out = ends[0] + (ends[1] - ends[0]) * (k as f32 / spacing[0] as f32);
             }
         }
-        decoded.iter_mut().for_each(|v| *v = *v * *v * scale);
-        let exact = &core.fine.density[(core.rows.start + j) * core.fine.width..][inside.clone()];
-        let decoded = &decoded[inside.start - core.columns.start..inside.end - core.columns.start];
-        let (d, t) = difference_and_total(decoded, exact);
-        difference += d as f64;
-        total += t as f64;
     }
-    let all = total / (1.0 - core.lost).max(f64::MIN_POSITIVE);
-    (difference + all - total) / all.max(f64::MIN_POSITIVE)
+    let mut difference = 0.0f64;
+    for j in 0..core.rows.len() {
+        let inside = core.columns_inside(j);
+        let (at, f) = (j / spacing[1], (j % spacing[1]) as f32 / spacing[1] as f32);
+        let above = &spread[at * count..][inside.clone()];
+        let below = &spread[(at + 1) * count..][inside.clone()];
+        let exact = &core.fine.density[(core.rows.start + j) * core.fine.width + core.columns.start..][inside];
+        difference += f64::from(line_difference(above, below, f, scale, exact));
+    }
+    let all = core.total / (1.0 - core.lost).max(f64::MIN_POSITIVE);
+    (difference + all - core.total) / all.max(f64::MIN_POSITIVE)
 }
 
-/// Σ|a − b| and Σb, in eight lanes; inlined, so that it has the vectors of its caller.
+/// Σ|scale · r² − exact| along a row, r a blend of the rows of roots above and below it; in eight lanes, inlined, so that it has the
+/// vectors of its caller.
 #[inline(always)]
-fn difference_and_total(a: &[f32], b: &[f32]) -> (f32, f32) {
-    let (mut differences, mut totals) = ([0.0f32; 8], [0.0f32; 8]);
-    let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));
-    let mut tail = (0.0f32, 0.0f32);
-    for (x, y) in a8.remainder().iter().zip(b8.remainder()) {
-        tail = (tail.0 + (x - y).abs(), tail.1 + y);
-    }
-    for (x, y) in a8.zip(b8) {
-        for k in 0..8 {
-            differences[k] += (x[k] - y[k]).abs();
-            totals[k] += y[k];
+fn line_difference(above: &[f32], below: &[f32], part: f32, scale: f32, exact: &[f32]) -> f32 {
+    const LANES: usize = 8;
+    let one = |a: f32, b: f32, e: f32| {
+        let root = a + (b - a) * part;
+        (root * root * scale - e).abs()
+    };
+    let mut sums = [0.0f32; LANES];
+    let (a8, b8, e8) = (above.chunks_exact(LANES), below.chunks_exact(LANES), exact.chunks_exact(LANES));
+    let (a1, b1, e1) = (a8.remainder(), b8.remainder(), e8.remainder());
+    let rest: f32 = a1.iter().zip(b1).zip(e1).map(|((a, b), e)| one(*a, *b, *e)).sum();
+    for ((a, b), e) in a8.zip(b8).zip(e8) {
+        for k in 0..LANES {
+            sums[k] += one(a[k], b[k], e[k]);
         }
     }
-    (differences.iter().sum::<f32>() + tail.0, totals.iter().sum::<f32>() + tail.1)
+    sums.iter().sum::<f32>() + rest
 }

@@ -73,12 +73,52 @@ impl Window {
         }
     }
 
+    /// Weights below this are those beyond the reach.
+    pub(super) const LEAST: f64 = 3.354_626_279_025_119e-4;
+
+    /// The least standard deviation, in texels; infinite where the window is even.
+    pub(super) fn least_sigma(&self) -> f64 {
+        self.reach.min_element() / REACH
+    }
+
+    /// The window at the middles of parts of `edge` texels: what a part's extent adds to the variance is taken off.
+    pub(super) fn of_parts(&self, edge: f64) -> Window {
+        let own = |inverse: f64| if inverse == 0.0 { 0.0 } else { (inverse.recip() - edge * edge / 12.0).recip() };
+        Window { inverse: DVec2::new(own(self.inverse.x), own(self.inverse.y)), ..*self }
+    }
+
+    /// Weights along an axis of the parts of an example that repeats: `count` parts, `per_texel` along a texel.
+    pub(super) fn along(&self, axis: usize, count: u32, per_texel: u32) -> AxisWeights {
+        if self.reach[axis].is_infinite() {
+            return AxisWeights((0..count).map(|k| (k, 1.0)).collect());
+        }
+        let per_texel = f64::from(per_texel);
+        let of_part = |k: i64| {
+            let d = (k as f64 + 0.5) / per_texel - self.centre[axis];
+            libm::exp(-0.5 * d * d * self.inverse[axis])
+        };
+        let first = (per_texel * (self.centre[axis] - self.reach[axis]) - 0.5).ceil() as i64;
+        let end = (per_texel * (self.centre[axis] + self.reach[axis]) - 0.5).floor() as i64 + 1;
+        let mut weights: Vec<(u32, f64)> = (first..end.min(first + i64::from(count)))
+            .map(|k| (k.rem_euclid(i64::from(count)) as u32, of_part(k)))
+            .collect();
+        // Wide windows go around small examples.
+        for k in first + i64::from(count)..end {
+            weights[((k - first) % i64::from(count)) as usize].1 += of_part(k);
+        }
+        AxisWeights(weights)
+    }
+
     /// Relative weight of a place at `d` texels from the centre: 1 in the middle, 0 out of reach.
     pub fn weight(&self, d: DVec2) -> f64 {
         let q = (d * d).dot(self.inverse);
         if q > REACH * REACH { 0.0 } else { libm::exp(-0.5 * q) }
     }
 }
+
+/// Index and weight of the parts of a map that a window reaches along an axis.
+#[derive(Clone, Debug)]
+pub(super) struct AxisWeights(pub Vec<(u32, f64)>);
 
 #[cfg(test)]
 mod tests {
