@@ -1,6 +1,6 @@
 //! What a bake of NDF maps makes: the maps of one example, and how a surface is covered with it.
 
-use glint_formats::ndf_maps::{NdfMapsParams, NodeRecord, NoiseTexel, PlacementParams, TransformRecord};
+use glint_formats::ndf_maps::{MAX_PALETTE, NdfMapsParams, NodeRecord, NoiseTexel, PlacementParams, TransformRecord};
 
 /// A material: one example's maps and how they cover the surface.
 #[derive(Clone, Debug)]
@@ -35,6 +35,6 @@ pub struct BakedPlacement {
     pub palette: Vec<TransformRecord>,
     /// One texel a sub-region, row by row; empty when tiled.
     pub noise: Vec<NoiseTexel>,
-    /// Shares of palette entries, unorm8: all mips, each with ⌈palette / 4⌉ layers of RGBA texels; empty when tiled.
-    pub classes: Vec<u8>,
+    /// Shares of palette entries, unorm8, in blocks of 1, 2², 4², … sub-regions, all mips; empty when tiled.
+    pub classes: Vec<[u8; MAX_PALETTE as usize]>,
 }

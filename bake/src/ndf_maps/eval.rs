@@ -95,7 +95,8 @@ impl Material {
             let to_local = matrix(self.placement.palette[term.class as usize].normal_to_local);
             sum += term.weight * self.maps.patch_density(term, to_local * s);
         }
-        sum
+        // Of what owners show the whole example may be taken off.
+        sum.max(0.0)
     }
 }
 

@@ -10,8 +10,7 @@
 //                                                                      y the lower ones
 //   fn glint_ndf_normal_texel(layer: u32, at: vec2u) -> vec4u          texel of NMNO
 //   fn glint_ndf_noise_texel(layer: u32, at: vec2u) -> vec4u           texel of PLNO; any value for tiled materials
-//   fn glint_ndf_class_texel(layer: u32, at: vec2u, group: u32, mip: u32) -> vec4f    texel of PLCL, of the texture's layer `group`;
-//                                                                      any value for tiled materials
+//   fn glint_ndf_class_texel(layer: u32, at: vec2u, mip: u32) -> vec4u texel of PLCL; any value for tiled materials
 
 #import erf
 #import ndf_maps::ellipse

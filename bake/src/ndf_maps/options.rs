@@ -103,7 +103,7 @@ pub struct StochasticOptions {
 impl Default for StochasticOptions {
     fn default() -> StochasticOptions {
         let ranges = TransformRanges { rotate_degrees: (0.0, 360.0), mirror: true, ..TransformRanges::default() };
-        StochasticOptions { ranges, palette: 16, cells: 32, spacing: 1.0, seed: 1 }
+        StochasticOptions { ranges, palette: 8, cells: 32, spacing: 2.0, seed: 1 }
     }
 }
 

@@ -2,8 +2,8 @@
 //!
 //! Xing et al. 2024, section 6.3, Fig. 3, gives each sub-region the example whose centre is nearest to it, with a border between
 //! neighbours. Here owners fade into each other: at a place the four sub-regions around count by smooth weights, so that a surface
-//! has no borders and neighbours of one owner show it undivided. A footprint over many cells sees the whole example under each
-//! transform, by the share of sub-regions that use it, where the paper visits every example.
+//! has no borders and neighbours of one owner show it undivided. A wide footprint sees the whole example under each transform, by the
+//! share that it has of the sub-regions there, where the paper visits every example.
 
 use super::baked::Material;
 use super::ellipse::{Ellipse, ellipse};
@@ -11,18 +11,25 @@ use super::eval::{EvalSettings, NodeTerm, Terms};
 use super::view::{next_probe, patches_share, probes};
 use crate::footprint::Footprint;
 use glam::{DVec2, IVec2, Vec2};
+use glint_formats::ndf_maps::MAX_PALETTE;
 
 /// Width in which neighbouring sub-regions fade into each other, in edges of one.
 const FADE: f32 = 1.0;
-/// Where probes of owners go over to sums over sub-regions, by their minor axis, and those to shares of transforms, by the geometric
-/// mean of both axes: from and to, in edges of a sub-region.
-const REGIONS_FROM: [f32; 2] = [0.15, 0.25];
-const CLASSES_FROM: [f32; 2] = [0.8, 1.2];
+/// From where to where shares of transforms come in, by a footprint's minor axis in edges of the example. From there on what owners show
+/// counts by its difference from the whole example.
+const SHARES_FROM: [f32; 2] = [0.16, 0.2];
+/// From where to where what owners show goes out: Gaussians so wide see all of an example that goes on beyond its edge.
+const OWNERS_UNTIL: [f32; 2] = [0.35, 0.5];
 /// Variance along an axis of a sub-region with the borders in which it fades, 1/12 + FADE²/20, in squares of its edge.
-const REGION_VARIANCE: f32 = 0.1333;
-/// Sub-regions count up to this many standard deviations of the footprint that is widened by them: (1 − q/8)² of the squared distance q
-/// in them, whose variance is that of the Gaussian.
-const REGIONS_REACH: f32 = 2.828_427;
+const REGION_VARIANCE: f32 = 0.133_333;
+
+/// Shares of the palette's entries.
+type Shares = [f32; MAX_PALETTE as usize];
+
+/// From 0 to 1 over a range.
+fn ramp(x: f32, [from, to]: [f32; 2]) -> f32 {
+    ((x - from) / (to - from)).clamp(0.0, 1.0)
+}
 
 /// Grid of a stochastic placement as a footprint sees it: positions are relative to the corner of the base cell, which keeps
 /// their digits far from the origin.
@@ -125,8 +132,17 @@ impl Owner {
 }
 
 impl Material {
-    /// Adds the probes of an ellipse, `weight` together: at each, what its owners show there.
-    fn owned_windows(&self, ellipse: &Ellipse, cells: Cells, weight: f32, terms: &mut Terms) {
+    /// Adds the probes of an ellipse, `weight` together: at each, what its owners show there. Takes `less` of each owner's weight off the
+    /// share of its palette entry.
+    fn owned_windows(
+        &self,
+        ellipse: &Ellipse,
+        cells: Cells,
+        weight: f32,
+        less: f32,
+        shares: &mut Shares,
+        terms: &mut Terms,
+    ) {
         let probes = probes(ellipse);
         let mut before = 0.0;
         let mut k = 0.0;
@@ -144,7 +160,9 @@ impl Material {
                     blend.coarser = ((blend.coarser * probes.total - before) / part).clamp(0.0, 1.0);
                     let seen = place + owner.pull(probes.variance) - owner.centre;
                     let local = position * seen + owner.offset;
-                    self.windows(owner.class, local, blend, weight * part / probes.total * owner.weight, terms);
+                    let share = weight * part / probes.total * owner.weight;
+                    shares[owner.class as usize] -= less * share;
+                    self.windows(owner.class, local, blend, share, terms);
                 }
             }
             before += part;
@@ -152,90 +170,100 @@ impl Material {
         }
     }
 
-    /// Adds what the sub-regions under an ellipse show, `weight` together: of each what lies around the middle of its product with the
-    /// footprint.
-    fn regions(&self, ellipse: &Ellipse, cells: Cells, weight: f32, terms: &mut Terms) {
-        let edge = 0.5 * cells.edge;
-        let own = REGION_VARIANCE * edge * edge;
-        let (axis, side) = (ellipse.axis, ellipse.axis.perp());
-        let (major2, minor2) = (ellipse.major * ellipse.major + own, ellipse.minor * ellipse.minor + own);
-        // What a footprint sees of a sub-region has the variance of their product, here the mean of both axes.
-        let variance = 0.5 * own * (ellipse.major * ellipse.major / major2 + ellipse.minor * ellipse.minor / minor2);
-        let reach = REGIONS_REACH / edge;
-        let mean = ellipse.mean / edge - 0.5;
-        let within = Ellipse { mean, axis, major: reach * major2.sqrt(), minor: reach * minor2.sqrt() };
-        let half = within.half_height();
-        let first = terms.nodes.len();
-        let mut total = 0.0;
-        let mut y = (mean.y - half).ceil();
-        while y <= mean.y + half {
-            let [from, to] = within.span_x(y);
-            let mut x = from.ceil();
-            while x <= to {
-                let middle = (Vec2::new(x, y) + 0.5) * edge;
-                let away = middle - ellipse.mean;
-                let (along, across) = (away.dot(axis), away.dot(side));
-                let q = along * along / major2 + across * across / minor2;
-                let t = (1.0 - q / (REGIONS_REACH * REGIONS_REACH)).max(0.0);
-                let share = t * t;
-                let owner = self.owner_of(cells, IVec2::new(x as i32, y as i32), share, Vec2::ZERO);
+    /// Adds the patches that an ellipse's owners show, `weight` together. Takes `less` of each owner's weight off the share of its palette
+    /// entry.
+    fn owned_patches(
+        &self,
+        ellipse: &Ellipse,
+        cells: Cells,
+        (weight, less): (f32, f32),
+        settings: EvalSettings,
+        shares: &mut Shares,
+        terms: &mut Terms,
+    ) {
+        for owner in self.owners_at(cells, ellipse.mean, ellipse.major * ellipse.minor) {
+            if owner.weight > 0.0 {
                 let position = self.position_to_local(owner.class);
-                let seen = middle - axis * (along * own / major2) - side * (across * own / minor2) - owner.centre;
-                let local = position * seen + owner.offset;
-                let mut blend = self.blend(variance * position.determinant().abs());
-                // Every fourth sub-region goes over to the coarser level after the other.
-                let at = 2 * cells.base + IVec2::new(x as i32, y as i32);
-                let turn = (at.x + 2 * at.y).rem_euclid(4) as f32;
-                blend.coarser = (4.0 * blend.coarser - turn).clamp(0.0, 1.0);
-                self.windows(owner.class, local, blend, share, terms);
-                total += share;
-                x += 1.0;
+                let from_centre = Ellipse { mean: ellipse.mean - owner.centre, ..*ellipse };
+                let local = from_centre.transformed(position, owner.offset);
+                shares[owner.class as usize] -= less * weight * owner.weight;
+                self.patches(owner.class, &local, settings, weight * owner.weight, terms);
             }
-            y += 1.0;
         }
-        terms.nodes[first..].iter_mut().for_each(|term| term.weight *= weight / total);
+    }
+
+    /// Adds `weight` times the palette entry of a sub-region, by its index.
+    fn region_class(&self, cells: Cells, region: IVec2, weight: f32, shares: &mut Shares) {
+        let regions = 2 * cells.count;
+        let texel = region.y.rem_euclid(regions) * regions + region.x.rem_euclid(regions);
+        shares[self.placement.noise[texel as usize].class() as usize] += weight;
     }
 
     /// Adds `weight` times the shares of the palette's entries in one texel of the class texture.
-    fn class_shares(&self, cells: Cells, mip: u32, block: IVec2, weight: f32, shares: &mut [f32]) {
-        let layers = shares.len().div_ceil(4);
-        let first: usize = (0..mip).map(|m| ((cells.count >> m) as usize).pow(2) * layers * 4).sum();
-        let size = cells.count >> mip;
-        let texel = (block.y.rem_euclid(size) * size + block.x.rem_euclid(size)) as usize;
-        for (class, share) in shares.iter_mut().enumerate() {
-            let at = first + ((class / 4) * (size * size) as usize + texel) * 4 + class % 4;
-            *share += weight * self.placement.classes[at] as f32 / 255.0;
+    fn class_window(&self, cells: Cells, mip: u32, at: IVec2, weight: f32, shares: &mut Shares) {
+        let first: usize = (0..mip).map(|m| ((2 * cells.count as usize) >> m).pow(2)).sum();
+        let size = (2 * cells.count) >> mip;
+        let texel = first + (at.y.rem_euclid(size) * size + at.x.rem_euclid(size)) as usize;
+        for (share, byte) in shares.iter_mut().zip(self.placement.classes[texel]) {
+            *share += weight / 255.0 * f32::from(byte);
         }
     }
 
-    /// Adds the whole example under every transform, by the share of sub-regions that use it, `weight` together.
-    fn classes(&self, ellipse: &Ellipse, cells: Cells, weight: f32, terms: &mut Terms) {
-        // Blocks that are read linearly have a standard deviation of half their edge.
-        let last = cells.count.trailing_zeros() as f32;
-        let lod = (2.0 * (ellipse.major * ellipse.minor).sqrt() / cells.edge).log2().clamp(0.0, last);
-        let mut shares = vec![0.0f32; self.placement.params.palette_len as usize];
-        for (mip, part) in [(lod.floor(), 1.0 - lod.fract()), (lod.floor() + 1.0, lod.fract())] {
+    /// Adds `weight` times the shares of the palette's entries in what a round Gaussian of a variance (texels²) sees around a place
+    /// relative to the base cell.
+    ///
+    /// Sub-regions that are read linearly are seen through a variance of 1/6, in squares of their edge, and mip m of the class texture
+    /// through 4ᵐ⁺¹/6; two in shares 1 − c and c have every variance between theirs.
+    fn class_shares(&self, cells: Cells, place: Vec2, variance: f32, weight: f32, shares: &mut Shares) {
+        let edge = 0.5 * cells.edge;
+        let last = (2 * cells.count).trailing_zeros() + 1;
+        let size = (6.0 * (variance / (edge * edge) + REGION_VARIANCE)).max(1.0);
+        // The exponent of 4.
+        let exponent = ((size.to_bits() >> 23) - 127) / 2;
+        let level = exponent.min(last);
+        let coarser = if level == last { 0.0 } else { (size * f32::from_bits((127 - 2 * level) << 23) - 1.0) / 3.0 };
+        let at = 2.0 * cells.base.as_vec2() + place / edge - 0.5;
+        for (level, part) in [(level, 1.0 - coarser), (level + 1, coarser)] {
             if part > 0.0 {
-                let at = (cells.base.as_vec2() + ellipse.mean / cells.edge) * (-mip).exp2() - 0.5;
-                let block = at.floor();
-                let f = at - block;
+                let mip = level.max(1) - 1;
+                let at = at * f32::from_bits((127 - mip) << 23);
+                let texel = at.floor();
+                let f = at - texel;
                 for (x, y, share) in [
                     (0, 0, (1.0 - f.x) * (1.0 - f.y)),
                     (1, 0, f.x * (1.0 - f.y)),
                     (0, 1, (1.0 - f.x) * f.y),
                     (1, 1, f.x * f.y),
                 ] {
-                    let block = block.as_ivec2() + IVec2::new(x, y);
-                    self.class_shares(cells, mip as u32, block, part * share, &mut shares);
+                    let texel = texel.as_ivec2() + IVec2::new(x, y);
+                    if level == 0 {
+                        self.region_class(cells, texel, part * weight * share, shares);
+                    } else {
+                        self.class_window(cells, mip, texel, part * weight * share, shares);
+                    }
                 }
             }
         }
-        let total: f32 = shares.iter().sum();
-        let node = self.maps.params.levels.last().map_or(0, |level| level.first_node);
-        for (class, share) in shares.into_iter().enumerate() {
-            if share > 0.0 {
-                terms.nodes.push(NodeTerm { node, class: class as u32, weight: weight * share / total });
+    }
+
+    /// Adds, `weight` together, the shares that the palette's entries have in what the probes of an ellipse see.
+    fn probed_shares(&self, ellipse: &Ellipse, cells: Cells, weight: f32, shares: &mut Shares) {
+        let probes = probes(ellipse);
+        let mut seen = Shares::default();
+        let mut k = 0.0;
+        loop {
+            let part = probes.weight(k);
+            if part <= 0.0 {
+                break;
             }
+            let place = ellipse.mean + ellipse.axis * (k * probes.step);
+            self.class_shares(cells, place, probes.variance, part, &mut seen);
+            k = next_probe(k);
+        }
+        // Eight bits do not sum to one.
+        let total: f32 = seen.iter().sum();
+        for (share, seen) in shares.iter_mut().zip(seen) {
+            *share += weight / total * seen;
         }
     }
 
@@ -255,33 +283,27 @@ impl Material {
     ) {
         let cells = cells_around(footprint.mean, count, edge);
         let seen = Ellipse { mean: cells.mean, ..ellipse(footprint).shortened(settings.max_ratio) };
-        let size = seen.minor / (0.5 * cells.edge);
-        // Sub-regions are as many as its area.
-        let wide = (seen.major * seen.minor).sqrt() / (0.5 * cells.edge);
-        let ramp = |size: f32, range: [f32; 2]| ((size - range[0]) / (range[1] - range[0])).clamp(0.0, 1.0);
-        let in_classes = ramp(wide, CLASSES_FROM);
-        let in_regions = ramp(size, REGIONS_FROM) * (1.0 - in_classes);
-        let in_patches = (1.0 - in_classes - in_regions)
-            * patches_share(seen.minor * self.most_texels(), self.maps.params.finest_variance);
-        let in_windows = 1.0 - in_classes - in_regions - in_patches;
+        let in_example = seen.minor * self.most_texels();
+        let size = in_example / self.size().max_element();
+        let in_shares = ramp(size, SHARES_FROM);
+        let in_owners = 1.0 - ramp(size, OWNERS_UNTIL);
+        let in_patches = in_owners * patches_share(in_example, self.maps.params.finest_variance);
+        let in_windows = in_owners - in_patches;
+        let mut shares = Shares::default();
+        if in_shares > 0.0 {
+            self.probed_shares(&seen, cells, in_shares, &mut shares);
+        }
         if in_windows > 0.0 {
-            self.owned_windows(&seen, cells, in_windows, terms);
+            self.owned_windows(&seen, cells, in_windows, in_shares, &mut shares, terms);
         }
         if in_patches > 0.0 {
-            for owner in self.owners_at(cells, seen.mean, seen.major * seen.minor) {
-                if owner.weight > 0.0 {
-                    let position = self.position_to_local(owner.class);
-                    let from_centre = Ellipse { mean: seen.mean - owner.centre, ..seen };
-                    let local = from_centre.transformed(position, owner.offset);
-                    self.patches(owner.class, &local, settings, in_patches * owner.weight, terms);
-                }
+            self.owned_patches(&seen, cells, (in_patches, in_shares), settings, &mut shares, terms);
+        }
+        let node = self.maps.params.levels.last().map_or(0, |level| level.first_node);
+        for (class, share) in shares.into_iter().enumerate() {
+            if share != 0.0 {
+                terms.nodes.push(NodeTerm { node, class: class as u32, weight: share });
             }
-        }
-        if in_regions > 0.0 {
-            self.regions(&seen, cells, in_regions, terms);
-        }
-        if in_classes > 0.0 {
-            self.classes(&seen, cells, in_classes, terms);
         }
     }
 }

@@ -5,18 +5,25 @@
 
 // Width in which neighbouring sub-regions fade into each other, in edges of one.
 const GLINT_NDF_FADE: f32 = 1.0;
-// Where probes of owners go over to sums over sub-regions, by their minor axis, and those to shares of transforms, by the geometric
-// mean of both axes: from and to, in edges of a sub-region.
-const GLINT_NDF_REGIONS_FROM: vec2f = vec2f(0.15, 0.25);
-const GLINT_NDF_CLASSES_FROM: vec2f = vec2f(0.8, 1.2);
+// From where to where shares of transforms come in, by a footprint's minor axis in edges of the example. From there on what owners
+// show counts by its difference from the whole example.
+const GLINT_NDF_SHARES_FROM: vec2f = vec2f(0.16, 0.2);
+// From where to where what owners show goes out: Gaussians so wide see all of an example that goes on beyond its edge.
+const GLINT_NDF_OWNERS_UNTIL: vec2f = vec2f(0.35, 0.5);
 // Variance along an axis of a sub-region with the borders in which it fades, in squares of its edge.
-const GLINT_NDF_REGION_VARIANCE: f32 = 0.1333;
-// Sub-regions count up to this many standard deviations of the footprint that is widened by them.
-const GLINT_NDF_REGIONS_REACH: f32 = 2.828427;
-// Sub-regions under one footprint, at most.
-const GLINT_NDF_MAX_REGIONS: i32 = 4096;
-// Largest palette, in groups of four.
-const GLINT_NDF_MAX_GROUPS: u32 = 8u;
+const GLINT_NDF_REGION_VARIANCE: f32 = 0.133333;
+// Entries of a palette at most, in groups of four.
+const GLINT_NDF_GROUPS: u32 = 4u;
+
+// Shares of the palette's entries.
+struct GlintNdfShares {
+    groups: array<vec4f, 4>,
+}
+
+// From 0 to 1 over a range.
+fn glint_ndf_ramp(x: f32, range: vec2f) -> f32 {
+    return clamp((x - range.x) / (range.y - range.x), 0.0, 1.0);
+}
 
 // The grid as a footprint sees it: positions are relative to the corner of the base cell.
 struct GlintNdfCells {
@@ -134,12 +141,24 @@ fn glint_ndf_pull(owner: GlintNdfOwner, variance: f32) -> vec2f {
     return owner.gradient * (variance / owner.weight);
 }
 
-// The probes of an ellipse, `weight` together: at each, what its owners show there.
+// Adds to the share of one palette entry.
+fn glint_ndf_add_share(shares: ptr<function, GlintNdfShares>, class_index: u32, weight: f32) {
+    let own = vec4u(class_index) == vec4u(0u, 1u, 2u, 3u) + 4u * vec4u(class_index / 4u);
+    let added = select(vec4f(0.0), vec4f(weight), own);
+    for (var group = 0u; group < GLINT_NDF_GROUPS; group++) {
+        (*shares).groups[group] += select(vec4f(0.0), added, group == class_index / 4u);
+    }
+}
+
+// The probes of an ellipse, `weight` together: at each, what its owners show there. Takes `less` of each owner's weight off the share
+// of its palette entry.
 fn glint_ndf_owned_windows(
     material: GlintNdfMaterial,
     e: GlintNdfEllipse,
     cells: GlintNdfCells,
     weight: f32,
+    less: f32,
+    shares: ptr<function, GlintNdfShares>,
     s: vec2f,
 ) -> GlintNdfSum {
     let probes = glint_ndf_probes(e);
@@ -164,8 +183,12 @@ fn glint_ndf_owned_windows(
                 blend.coarser = clamp((blend.coarser * probes.total - before) / part, 0.0, 1.0);
                 let seen = place + glint_ndf_pull(owner, probes.variance) - owner.centre;
                 let local = glint_ndf_apply(position, seen) + owner.offset;
-                let share = weight * part / probes.total * owner.weight * abs(glint_ndf_determinant(normal));
-                let shown = glint_ndf_windows(material, local, blend, share, glint_ndf_apply(normal, s));
+                let share = weight * part / probes.total * owner.weight;
+                if less > 0.0 {
+                    glint_ndf_add_share(shares, owner.class_index, -less * share);
+                }
+                let mass = share * abs(glint_ndf_determinant(normal));
+                let shown = glint_ndf_windows(material, local, blend, mass, glint_ndf_apply(normal, s));
                 sum = GlintNdfSum(sum.density + shown.density, sum.terms + shown.terms);
             }
         }
@@ -175,127 +198,131 @@ fn glint_ndf_owned_windows(
     return sum;
 }
 
-// What the sub-regions under an ellipse show, `weight` together: of each what lies around the middle of its product with the footprint.
-fn glint_ndf_regions(
+// The patches that an ellipse's owners show, `weight` together. Takes `less` of each owner's weight off the share of its palette entry.
+fn glint_ndf_owned_patches(
     material: GlintNdfMaterial,
     e: GlintNdfEllipse,
     cells: GlintNdfCells,
     weight: f32,
+    less: f32,
+    settings: GlintNdfSettings,
+    shares: ptr<function, GlintNdfShares>,
     s: vec2f,
 ) -> GlintNdfSum {
-    let edge = 0.5 * material.cell_texels;
-    let own = GLINT_NDF_REGION_VARIANCE * edge * edge;
-    let side = vec2f(-e.axis.y, e.axis.x);
-    let major2 = e.major * e.major + own;
-    let minor2 = e.minor * e.minor + own;
-    // What a footprint sees of a sub-region has the variance of their product, here the mean of both axes.
-    let variance = 0.5 * own * (e.major * e.major / major2 + e.minor * e.minor / minor2);
-    let reach = GLINT_NDF_REGIONS_REACH / edge;
-    let mean = e.mean / edge - 0.5;
-    let within = GlintNdfEllipse(mean, e.axis, reach * sqrt(major2), reach * sqrt(minor2));
-    let half = glint_ndf_half_height(within);
-    var y = ceil(mean.y - half);
-    var span = glint_ndf_span_x(within, y);
-    var x = ceil(span.x);
     var sum = GlintNdfSum(0.0, 0.0);
-    var total = 0.0;
-    // One loop, not two: pixels in step wait for the most sub-regions of one of them once.
-    for (var visit = 0; visit < GLINT_NDF_MAX_REGIONS; visit++) {
-        if x <= span.y {
-            let middle = (vec2f(x, y) + 0.5) * edge;
-            let away = middle - e.mean;
-            let along = dot(away, e.axis);
-            let across = dot(away, side);
-            let q = along * along / major2 + across * across / minor2;
-            let t = max(1.0 - q / (GLINT_NDF_REGIONS_REACH * GLINT_NDF_REGIONS_REACH), 0.0);
-            let share = t * t;
-            let owner = glint_ndf_owner_of(material, cells, vec2i(i32(x), i32(y)), share, vec2f(0.0));
+    var owners = glint_ndf_owners_at(material, cells, e.mean, e.major * e.minor);
+    for (var o = 0u; o < 4u; o++) {
+        let owner = owners[o];
+        if owner.weight > 0.0 {
             let at = material.palette_records + 2u * owner.class_index;
             let position = bitcast<vec4f>(glint_ndf_record(material.layer, at));
             let normal = bitcast<vec4f>(glint_ndf_record(material.layer, at + 1u));
-            let seen = middle - e.axis * (along * own / major2) - side * (across * own / minor2) - owner.centre;
-            let local = glint_ndf_apply(position, seen) + owner.offset;
-            var blend = glint_ndf_blend(material, variance * abs(glint_ndf_determinant(position)));
-            // Every fourth sub-region goes over to the coarser level after the other.
-            let index = 2 * cells.base + vec2i(i32(x), i32(y));
-            let turn = f32((index.x + 2 * index.y) & 3);
-            blend.coarser = clamp(4.0 * blend.coarser - turn, 0.0, 1.0);
-            let part = share * abs(glint_ndf_determinant(normal));
-            let shown = glint_ndf_windows(material, local, blend, part, glint_ndf_apply(normal, s));
-            sum = GlintNdfSum(sum.density + shown.density, sum.terms + shown.terms);
-            total += share;
-            x += 1.0;
-        } else {
-            y += 1.0;
-            if !(y <= mean.y + half) {
-                break;
+            var from_centre = e;
+            from_centre.mean -= owner.centre;
+            let local = glint_ndf_transformed(from_centre, position, owner.offset);
+            if less > 0.0 {
+                glint_ndf_add_share(shares, owner.class_index, -less * weight * owner.weight);
             }
-            span = glint_ndf_span_x(within, y);
-            x = ceil(span.x);
+            let mass = weight * owner.weight * abs(glint_ndf_determinant(normal));
+            let shown = glint_ndf_patches(material, local, settings, mass, glint_ndf_apply(normal, s));
+            sum = GlintNdfSum(sum.density + shown.density, sum.terms + shown.terms);
         }
     }
-    sum.density *= weight / max(total, 1.0e-30);
     return sum;
 }
 
-// Shares of four palette entries in one texel of the class texture.
-fn glint_ndf_class_shares(material: GlintNdfMaterial, mip: u32, group: u32, block: vec2i) -> vec4f {
-    let size = material.cells >> mip;
-    return glint_ndf_class_texel(material.layer, vec2u(block) & vec2u(size - 1u), group, mip);
+// Adds `weight` times the palette entry of a sub-region, by its index.
+fn glint_ndf_region_class(material: GlintNdfMaterial, region: vec2i, weight: f32, shares: ptr<function, GlintNdfShares>) {
+    let texel = glint_ndf_noise_texel(material.layer, vec2u(region) & vec2u(2u * material.cells - 1u));
+    glint_ndf_add_share(shares, texel.z & 0xffu, weight);
 }
 
-// The whole example under every transform, by the share of sub-regions that use it, `weight` together.
-fn glint_ndf_classes(
+// Adds `weight` times the shares of the palette's entries in one texel of the class texture.
+fn glint_ndf_class_window(
+    material: GlintNdfMaterial,
+    mip: u32,
+    at: vec2i,
+    weight: f32,
+    shares: ptr<function, GlintNdfShares>,
+) {
+    let size = (2u * material.cells) >> mip;
+    let texel = glint_ndf_class_texel(material.layer, vec2u(at) & vec2u(size - 1u), mip);
+    (*shares).groups[0] += weight * unpack4x8unorm(texel.x);
+    (*shares).groups[1] += weight * unpack4x8unorm(texel.y);
+    (*shares).groups[2] += weight * unpack4x8unorm(texel.z);
+    (*shares).groups[3] += weight * unpack4x8unorm(texel.w);
+}
+
+// Adds `weight` times the shares of the palette's entries in what a round Gaussian of a variance (texels^2) sees around a place
+// relative to the base cell.
+//
+// Sub-regions that are read linearly are seen through a variance of 1/6, in squares of their edge, and mip m of the class texture through
+// 4^(m + 1) / 6; two in shares 1 - c and c have every variance between theirs.
+fn glint_ndf_class_shares(
+    material: GlintNdfMaterial,
+    cells: GlintNdfCells,
+    place: vec2f,
+    variance: f32,
+    weight: f32,
+    shares: ptr<function, GlintNdfShares>,
+) {
+    let edge = 0.5 * material.cell_texels;
+    let last = firstTrailingBit(2u * material.cells) + 1u;
+    let size = max(6.0 * (variance / (edge * edge) + GLINT_NDF_REGION_VARIANCE), 1.0);
+    // The exponent of 4.
+    let exponent = ((bitcast<u32>(size) >> 23u) - 127u) / 2u;
+    let level = min(exponent, last);
+    let coarser = select((size * bitcast<f32>((127u - 2u * level) << 23u) - 1.0) / 3.0, 0.0, level == last);
+    let at = 2.0 * vec2f(vec2u(cells.base) & vec2u(material.cells - 1u)) + place / edge - 0.5;
+    for (var k = 0u; k < 2u; k++) {
+        let part = weight * select(1.0 - coarser, coarser, k == 1u);
+        if part > 0.0 {
+            let mip = max(level + k, 1u) - 1u;
+            let within = at * bitcast<f32>((127u - mip) << 23u);
+            let texel = floor(within);
+            let f = within - texel;
+            let first = vec2i(texel);
+            for (var corner = 0; corner < 4; corner++) {
+                let step = vec2i(corner & 1, corner >> 1u);
+                let share = select(1.0 - f.x, f.x, step.x == 1) * select(1.0 - f.y, f.y, step.y == 1);
+                if level + k == 0u {
+                    glint_ndf_region_class(material, first + step, part * share, shares);
+                } else {
+                    glint_ndf_class_window(material, mip, first + step, part * share, shares);
+                }
+            }
+        }
+    }
+}
+
+// Adds, `weight` together, the shares that the palette's entries have in what the probes of an ellipse see.
+fn glint_ndf_probed_shares(
     material: GlintNdfMaterial,
     e: GlintNdfEllipse,
     cells: GlintNdfCells,
     weight: f32,
-    s: vec2f,
-) -> GlintNdfSum {
-    let groups = min((material.palette + 3u) / 4u, GLINT_NDF_MAX_GROUPS);
-    // Blocks that are read linearly have a standard deviation of half their edge.
-    let last = f32(firstTrailingBit(material.cells));
-    let lod = clamp(log2(2.0 * sqrt(e.major * e.minor) / material.cell_texels), 0.0, last);
-    let base = vec2f(vec2u(cells.base) & vec2u(material.cells - 1u)) + e.mean / material.cell_texels;
-    let node = glint_ndf_record(material.layer, material.levels - 1u).z;
-    var sum = GlintNdfSum(0.0, 0.0);
-    var total = 0.0;
-    // Four classes at a time, so that none needs an array.
-    for (var group = 0u; group < groups; group++) {
-        var shares = vec4f(0.0);
-        for (var k = 0u; k < 2u; k++) {
-            let mip = floor(lod) + f32(k);
-            let part = select(1.0 - fract(lod), fract(lod), k == 1u);
-            if part > 0.0 {
-                let at = base * exp2(-mip) - 0.5;
-                let cell = floor(at);
-                let f = at - cell;
-                let block = vec2i(cell);
-                let m = u32(mip);
-                shares += part * ((1.0 - f.x) * (1.0 - f.y) * glint_ndf_class_shares(material, m, group, block)
-                    + f.x * (1.0 - f.y) * glint_ndf_class_shares(material, m, group, block + vec2i(1, 0))
-                    + (1.0 - f.x) * f.y * glint_ndf_class_shares(material, m, group, block + vec2i(0, 1))
-                    + f.x * f.y * glint_ndf_class_shares(material, m, group, block + vec2i(1, 1)));
-            }
+    shares: ptr<function, GlintNdfShares>,
+) {
+    let probes = glint_ndf_probes(e);
+    var seen = GlintNdfShares(array<vec4f, 4>(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0)));
+    var k = 0.0;
+    for (var i = 0; i < 2 * GLINT_NDF_MAX_PROBES; i++) {
+        let part = glint_ndf_weight(probes, k);
+        if part <= 0.0 {
+            break;
         }
-        for (var k = 4u * group; k < min(material.palette, 4u * group + 4u); k++) {
-            let low = select(shares.x, shares.y, (k & 1u) == 1u);
-            let high = select(shares.z, shares.w, (k & 1u) == 1u);
-            let share = select(low, high, (k & 2u) == 2u);
-            if share > 0.0 {
-                let normal = bitcast<vec4f>(glint_ndf_record(material.layer, material.palette_records + 2u * k + 1u));
-                let density = glint_ndf_node_density(material, node, glint_ndf_apply(normal, s));
-                sum.density += share * abs(glint_ndf_determinant(normal)) * density;
-                sum.terms += 1.0;
-                total += share;
-            }
-        }
+        let place = e.mean + e.axis * (k * probes.step);
+        glint_ndf_class_shares(material, cells, place, probes.variance, part, &seen);
+        k = glint_ndf_next_probe(k);
     }
-    sum.density *= weight / max(total, 1.0e-30);
-    return sum;
+    // Eight bits do not sum to one.
+    let total = dot(seen.groups[0] + seen.groups[1] + seen.groups[2] + seen.groups[3], vec4f(1.0));
+    for (var group = 0u; group < GLINT_NDF_GROUPS; group++) {
+        (*shares).groups[group] += weight / total * seen.groups[group];
+    }
 }
 
-// What a footprint sees: sub-regions, patches, or shares of transforms.
+// What a footprint sees: windows and patches of owners, and the whole example under each transform.
 fn glint_ndf_stochastic(
     material: GlintNdfMaterial,
     footprint: GlintFootprint,
@@ -305,44 +332,36 @@ fn glint_ndf_stochastic(
     let cells = glint_ndf_cells_around(material, footprint.mean);
     var seen = glint_ndf_shortened(glint_ndf_ellipse(footprint), settings.max_ratio);
     seen.mean = cells.mean;
-    let size = seen.minor / (0.5 * material.cell_texels);
-    let classes = GLINT_NDF_CLASSES_FROM;
-    // Sub-regions are as many as its area.
-    let wide = sqrt(seen.major * seen.minor) / (0.5 * material.cell_texels);
-    let in_classes = clamp((wide - classes.x) / (classes.y - classes.x), 0.0, 1.0);
-    let regions = GLINT_NDF_REGIONS_FROM;
-    let in_regions = clamp((size - regions.x) / (regions.y - regions.x), 0.0, 1.0) * (1.0 - in_classes);
-    let in_patches = (1.0 - in_classes - in_regions)
-        * glint_ndf_patches_share(seen.minor * material.most_texels, material.finest_variance);
-    let in_windows = 1.0 - in_classes - in_regions - in_patches;
+    let in_example = seen.minor * material.most_texels;
+    let size = in_example / f32(max(material.size.x, material.size.y));
+    let in_shares = glint_ndf_ramp(size, GLINT_NDF_SHARES_FROM);
+    let in_owners = 1.0 - glint_ndf_ramp(size, GLINT_NDF_OWNERS_UNTIL);
+    let in_patches = in_owners * glint_ndf_patches_share(in_example, material.finest_variance);
+    let in_windows = in_owners - in_patches;
+    var shares = GlintNdfShares(array<vec4f, 4>(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0)));
     var sum = GlintNdfSum(0.0, 0.0);
+    if in_shares > 0.0 {
+        glint_ndf_probed_shares(material, seen, cells, in_shares, &shares);
+    }
     if in_windows > 0.0 {
-        sum = glint_ndf_owned_windows(material, seen, cells, in_windows, s);
+        sum = glint_ndf_owned_windows(material, seen, cells, in_windows, in_shares, &shares, s);
     }
     if in_patches > 0.0 {
-        var owners = glint_ndf_owners_at(material, cells, seen.mean, seen.major * seen.minor);
-        for (var o = 0u; o < 4u; o++) {
-            let owner = owners[o];
-            if owner.weight > 0.0 {
-                let at = material.palette_records + 2u * owner.class_index;
-                let position = bitcast<vec4f>(glint_ndf_record(material.layer, at));
-                let normal = bitcast<vec4f>(glint_ndf_record(material.layer, at + 1u));
-                var from_centre = seen;
-                from_centre.mean -= owner.centre;
-                let local = glint_ndf_transformed(from_centre, position, owner.offset);
-                let share = in_patches * owner.weight * abs(glint_ndf_determinant(normal));
-                let shown = glint_ndf_patches(material, local, settings, share, glint_ndf_apply(normal, s));
-                sum = GlintNdfSum(sum.density + shown.density, sum.terms + shown.terms);
+        let shown = glint_ndf_owned_patches(material, seen, cells, in_patches, in_shares, settings, &shares, s);
+        sum = GlintNdfSum(sum.density + shown.density, sum.terms + shown.terms);
+    }
+    if in_shares > 0.0 {
+        let node = glint_ndf_record(material.layer, material.levels - 1u).z;
+        for (var k = 0u; k < material.palette; k++) {
+            let share = shares.groups[k / 4u][k % 4u];
+            if share != 0.0 {
+                let normal = bitcast<vec4f>(glint_ndf_record(material.layer, material.palette_records + 2u * k + 1u));
+                let density = glint_ndf_node_density(material, node, glint_ndf_apply(normal, s));
+                sum.density += share * abs(glint_ndf_determinant(normal)) * density;
+                sum.terms += 1.0;
             }
         }
     }
-    if in_regions > 0.0 {
-        let shown = glint_ndf_regions(material, seen, cells, in_regions, s);
-        sum = GlintNdfSum(sum.density + shown.density, sum.terms + shown.terms);
-    }
-    if in_classes > 0.0 {
-        let shown = glint_ndf_classes(material, seen, cells, in_classes, s);
-        sum = GlintNdfSum(sum.density + shown.density, sum.terms + shown.terms);
-    }
-    return sum;
+    // Of what owners show the whole example may be taken off.
+    return GlintNdfSum(max(sum.density, 0.0), sum.terms);
 }

@@ -17,7 +17,7 @@ use crate::error::Result;
 use crate::normal_map::NormalMap;
 use crate::rng::{ItemRng, Purpose};
 use glam::{DMat2, DVec2};
-use glint_formats::ndf_maps::{NoiseTexel, PlacementKind, PlacementParams, TransformRecord};
+use glint_formats::ndf_maps::{MAX_PALETTE, NoiseTexel, PlacementKind, PlacementParams, TransformRecord};
 
 /// Places examples of `map`, whose lobes have the standard deviation `roughness`, on a surface.
 ///
@@ -171,36 +171,47 @@ fn shown(centres: &[Centre], owners: &[[u32; 4]], cells: u32, k: u32) -> NoiseTe
     }
 }
 
-/// Shares of each palette entry in blocks of 1, 2², 4², … cells, as the mips of a layered RGBA texture.
-fn class_mips(noise: &[NoiseTexel], cells: u32, palette: u32) -> Vec<u8> {
-    let layers = palette.div_ceil(4) as usize;
-    let entries = layers * 4;
-    let n = cells as usize;
-    let mut shares = vec![0.0f32; n * n * entries];
-    for (k, texel) in noise.iter().enumerate() {
-        let cell = k / (2 * n) / 2 * n + k % (2 * n) / 2;
-        shares[cell * entries + texel.class() as usize] += 0.25;
-    }
-    let mut bytes = Vec::new();
-    let mut size = n;
-    loop {
-        for layer in 0..layers {
-            for texel in shares.chunks_exact(entries) {
-                bytes.extend(texel[layer * 4..layer * 4 + 4].iter().map(|v| (v * 255.0).round() as u8));
+/// Variance of the windows of the class texture's first mip, in squares of a sub-region's edge, and what each has more than the one before,
+/// in squares of that one's texels: read linearly, which adds a sixth, mip m has the variance 4ᵐ⁺¹/6.
+const CLASS_WINDOW: (f64, f64) = (0.5, 1.5);
+
+/// Shares of each palette entry under Gaussian windows around every sub-region, every second, every fourth and so on, as the mips of a
+/// texture of 16 bytes a texel.
+fn class_mips(noise: &[NoiseTexel], cells: u32, palette: u32) -> Vec<[u8; MAX_PALETTE as usize]> {
+    let regions = 2 * cells as usize;
+    let texels: usize = (0..=regions.trailing_zeros()).map(|mip| (regions >> mip).pow(2)).sum();
+    let mut mips = vec![[0; MAX_PALETTE as usize]; texels];
+    for class in 0..palette {
+        let own = |texel: &NoiseTexel| if texel.class() == class { 1.0 } else { 0.0 };
+        let mut shares = periodic_blur(&noise.iter().map(own).collect::<Vec<f64>>(), regions, CLASS_WINDOW.0);
+        let (mut size, mut first) = (regions, 0);
+        loop {
+            for (texel, share) in mips[first..].iter_mut().zip(&shares) {
+                texel[class as usize] = (share * 255.0).round() as u8;
             }
-        }
-        if size == 1 {
-            return bytes;
-        }
-        let half = size / 2;
-        let mut next = vec![0.0f32; half * half * entries];
-        for y in 0..size {
-            for x in 0..size {
-                for e in 0..entries {
-                    next[((y / 2) * half + x / 2) * entries + e] += 0.25 * shares[(y * size + x) * entries + e];
-                }
+            if size == 1 {
+                break;
             }
+            first += size * size;
+            let blurred = periodic_blur(&shares, size, CLASS_WINDOW.1);
+            size /= 2;
+            shares = (0..size * size).map(|k| blurred[2 * (k / size) * 2 * size + 2 * (k % size)]).collect();
         }
-        (shares, size) = (next, half);
     }
+    mips
+}
+
+/// A grid of `size` × `size` that repeats, under a Gaussian of a variance in squares of its spacing.
+fn periodic_blur(grid: &[f64], size: usize, variance: f64) -> Vec<f64> {
+    let reach = (5.0 * variance.sqrt()).ceil() as i64;
+    let weights: Vec<f64> = (-reach..=reach).map(|k| libm::exp(-0.5 * (k * k) as f64 / variance)).collect();
+    let total: f64 = weights.iter().sum();
+    let around = |k: usize, step: i64| (k as i64 + step).rem_euclid(size as i64) as usize;
+    let along = |grid: &[f64], place: &dyn Fn(usize, i64) -> usize| -> Vec<f64> {
+        let mean =
+            |k: usize| weights.iter().zip(-reach..).map(|(w, step)| w * grid[place(k, step)]).sum::<f64>() / total;
+        (0..size * size).map(mean).collect()
+    };
+    let rows = along(grid, &|k, step| k / size * size + around(k % size, step));
+    along(&rows, &|k, step| around(k / size, step) * size + k % size)
 }

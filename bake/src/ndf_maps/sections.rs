@@ -36,8 +36,8 @@ pub fn to_sections(name: &str, material: &Material, codec: Codec) -> Vec<Section
     if let PlacementKind::Stochastic { cells_x, .. } = placement.params.kind {
         let noise = bytemuck::cast_slice(&placement.noise).to_vec();
         sections.push(Section::texture(NOISE, name, noise_resource(cells_x), noise));
-        let shape = classes_resource(cells_x, placement.params.palette_len);
-        sections.push(Section::texture(CLASSES, name, shape, placement.classes.clone()));
+        let shape = classes_resource(cells_x);
+        sections.push(Section::texture(CLASSES, name, shape, bytemuck::cast_slice(&placement.classes).to_vec()));
     }
     for section in &mut sections {
         section.codec = codec;
@@ -124,8 +124,11 @@ pub fn from_pack(pack: &Pack, name: &str) -> Result<Material> {
     let patches: Vec<[[i16; 2]; 4]> = records(pack, NORMALS, name)?;
     let normals = patches.into_iter().map(|[.., own]| own).collect();
     let stochastic = matches!(placement_params.kind, PlacementKind::Stochastic { .. });
-    let (noise, classes) =
-        if stochastic { (records(pack, NOISE, name)?, bytes(pack, CLASSES, name)?) } else { (Vec::new(), Vec::new()) };
+    let (noise, classes) = if stochastic {
+        (records(pack, NOISE, name)?, records(pack, CLASSES, name)?)
+    } else {
+        (Vec::new(), Vec::new())
+    };
     Ok(Material {
         maps: BakedNdfMaps { params: maps_params, nodes, atlas_size, atlas, normals },
         placement: BakedPlacement { params: placement_params, palette, noise, classes },

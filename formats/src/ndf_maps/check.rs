@@ -321,7 +321,7 @@ fn check_placement(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Ve
         check_noise(noise, params.palette_len, issues);
     }
     if let Some(classes) = classes {
-        classes.expect(IssueCode::ClassesDescriptor, classes_resource(cells_x, params.palette_len), issues);
+        classes.expect(IssueCode::ClassesDescriptor, classes_resource(cells_x), issues);
     }
     Some(params)
 }

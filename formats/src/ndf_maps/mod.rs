@@ -58,7 +58,7 @@ pub const BINDINGS: &[Binding] = &[
     Binding::Texture(DENSITY, View::Float2d),
     Binding::Texture(NORMALS, View::Uint2d),
     Binding::Texture(NOISE, View::Uint2d),
-    Binding::Texture(CLASSES, View::Float2dArray),
+    Binding::Texture(CLASSES, View::Uint2d),
 ];
 
 /// How the coat of a two-layer material is bound, after the base; zeros where there is no coat. Its uniform bytes are a storage
@@ -69,7 +69,7 @@ pub const COAT_BINDINGS: &[Binding] = &[
     Binding::Texture(DENSITY, View::Float2d),
     Binding::Texture(NORMALS, View::Uint2d),
     Binding::Texture(NOISE, View::Uint2d),
-    Binding::Texture(CLASSES, View::Float2dArray),
+    Binding::Texture(CLASSES, View::Uint2d),
 ];
 
 /// What is bound last: how the layers lie on each other, zeros where there is one, and the sampler of both atlases.
@@ -88,7 +88,7 @@ pub const MAX_LEVELS: usize = 64;
 /// Texels along an edge of an example at most, as of any texture.
 pub const MAX_EDGE: u32 = 8192;
 /// Entries of a palette at most: the run time keeps a share of each.
-pub const MAX_PALETTE: u32 = 32;
+pub const MAX_PALETTE: u32 = 16;
 
 /// What shaders know of a material, the first bytes of section [`UNIFORM`].
 #[repr(C)]
@@ -324,15 +324,15 @@ pub fn noise_resource(cells: u32) -> Resource {
     Resource::Texture { vk_format: vk_format::R32G32B32A32_UINT, width, height, layers: 1, faces: 1, mips: 1 }
 }
 
-/// Descriptor of [`CLASSES`] of a grid of `cells` × `cells` and a palette of `palette_len`.
-pub fn classes_resource(cells: u32, palette_len: u32) -> Resource {
+/// Descriptor of [`CLASSES`] of a grid of `cells` × `cells`: a byte an entry of the palette, [`MAX_PALETTE`] of them.
+pub fn classes_resource(cells: u32) -> Resource {
     Resource::Texture {
-        vk_format: vk_format::R8G8B8A8_UNORM,
-        width: cells,
-        height: cells,
-        layers: palette_len.div_ceil(4),
+        vk_format: vk_format::R32G32B32A32_UINT,
+        width: 2 * cells,
+        height: 2 * cells,
+        layers: 1,
         faces: 1,
-        mips: full_mip_count(cells, cells),
+        mips: full_mip_count(2 * cells, 2 * cells),
     }
 }
 

@@ -33,14 +33,14 @@ struct NdfMapsLayers {
 // Section PLNO.
 @group(1) @binding(4) var ndf_maps_noise: texture_2d<u32>;
 // Section PLCL.
-@group(1) @binding(5) var ndf_maps_classes: texture_2d_array<f32>;
+@group(1) @binding(5) var ndf_maps_classes: texture_2d<u32>;
 // The same sections of the coat. Its uniform bytes are a storage buffer: some adapters fail on branches on a program's fourth uniform.
 @group(1) @binding(6) var<storage, read> ndf_maps_coat: array<vec4u>;
 @group(1) @binding(7) var ndf_maps_coat_nodes: texture_2d<u32>;
 @group(1) @binding(8) var ndf_maps_coat_density: texture_2d<f32>;
 @group(1) @binding(9) var ndf_maps_coat_normals: texture_2d<u32>;
 @group(1) @binding(10) var ndf_maps_coat_noise: texture_2d<u32>;
-@group(1) @binding(11) var ndf_maps_coat_classes: texture_2d_array<f32>;
+@group(1) @binding(11) var ndf_maps_coat_classes: texture_2d<u32>;
 @group(1) @binding(12) var<storage, read> ndf_maps_layers: NdfMapsLayers;
 @group(1) @binding(13) var ndf_maps_sampler: sampler;
 
@@ -111,12 +111,12 @@ fn glint_ndf_noise_texel(layer: u32, at: vec2u) -> vec4u {
     return textureLoad(ndf_maps_noise, at, 0);
 }
 
-fn glint_ndf_class_texel(layer: u32, at: vec2u, group: u32, mip: u32) -> vec4f {
+fn glint_ndf_class_texel(layer: u32, at: vec2u, mip: u32) -> vec4u {
     bound_loads += 1u;
     if NDF_MAPS_LAYERED {
         if layer != 0u {
-            return textureLoad(ndf_maps_coat_classes, at, group, mip);
+            return textureLoad(ndf_maps_coat_classes, at, mip);
         }
     }
-    return textureLoad(ndf_maps_classes, at, group, mip);
+    return textureLoad(ndf_maps_classes, at, mip);
 }

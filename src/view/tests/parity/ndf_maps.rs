@@ -162,7 +162,7 @@ fn samples() -> [[Sample; 2]; 4] {
             Sample::new(map(12, 16, Wrap::Clamp), options(0.06, 0.7), PlacementOptions::Stochastic(varied)),
         ],
         [
-            Sample::new(map(8, 8, Wrap::Repeat), options(0.06, 0.7), stochastic(32, 16, 2.0, 9)),
+            Sample::new(map(8, 8, Wrap::Repeat), options(0.06, 0.7), stochastic(16, 16, 2.0, 9)),
             Sample::new(map(9, 5, Wrap::Clamp), options(0.08, 0.7), tiled(200.0, 0.6, 0.0)),
         ],
         [
