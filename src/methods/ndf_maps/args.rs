@@ -70,15 +70,18 @@ pub struct Args {
     /// copies share one transform, so they take single values only.
     #[arg(long, value_name = "LIST", value_parser = values::transforms, help_heading = "Placement")]
     pub transforms: Option<TransformRanges>,
-    /// Different transforms of a stochastic placement, 1 to 32
-    #[arg(long, value_name = "N", default_value = "16", value_parser = clap::value_parser!(u32).range(1..=32))]
+    /// Different transforms of a stochastic placement, 1 to 16
+    #[arg(long, value_name = "N", default_value = "8", value_parser = clap::value_parser!(u32).range(1..=16))]
     #[arg(help_heading = "Placement")]
     pub palette: u32,
     /// Cells along both axes before a stochastic placement repeats, a power of two from 2 to 1024
     #[arg(long, value_name = "N", default_value = "32", value_parser = power_of_two, help_heading = "Placement")]
     pub cells: u32,
     /// Edge of a cell relative to the map's longer edge, 0.25 to 8
-    #[arg(long, value_name = "EDGES", default_value = "1.0", value_parser = values::positive, help_heading = "Placement")]
+    ///
+    /// A copy covers about a cell. From 2 on each quarter of a cell shows the whole map, and wide footprints are seen right;
+    /// below, copies repeat less and wide footprints are off by more.
+    #[arg(long, value_name = "EDGES", default_value = "2.0", value_parser = values::positive, help_heading = "Placement")]
     pub spacing: f64,
     /// Seed of everything random
     #[arg(long, value_name = "SEED", default_value = "1", help_heading = "Placement")]
