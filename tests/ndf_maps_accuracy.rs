@@ -93,10 +93,9 @@ fn check_nodes(name: &str, map: &NormalMap, roughness: f64, asked: f64, stride: 
     for (exact, (node, recorded)) in exact.iter().zip(recorded) {
         let recorded = f64::from(*recorded);
         assert!(exact.e1 <= 5.0 * asked, "{name}: E₁ {} at σ_r {roughness}", exact.e1);
-        // What is recorded is no less than what is, and at most the error asked more.
         let above = recorded - exact.e1;
         assert!(
-            (-0.1 * asked..=asked).contains(&above),
+            (-5e-3..=0.4 * asked).contains(&above),
             "{name}: E₁ of node {node} is {}, recorded {recorded}",
             exact.e1
         );
@@ -144,17 +143,17 @@ fn sizes_stay_within_the_byte_limits() {
         bytes
     };
     // The aim is 256 KiB for 16² and 1 MiB for 32²; steep maps fill the disk in every window and take more.
-    assert!(size("tiny/brushed_16x16.png", None) <= 512 * 1024);
+    assert!(size("tiny/brushed_16x16.png", None) <= 352 * 1024);
     for (name, x, y) in CROPS_16 {
         let bytes = size(name, Some((x, y, 16)));
-        assert!(bytes <= 1280 << 10, "{name}: {bytes} bytes for 16²");
+        assert!(bytes <= 1024 << 10, "{name}: {bytes} bytes for 16²");
     }
     for name in ["tiny/scratches_32x32.png", "tiny/wicker_box16_32x32.png"] {
-        assert!(size(name, None) <= 1024 * 1024, "{name}");
+        assert!(size(name, None) <= 600 * 1024, "{name}");
     }
     for (name, x, y) in CROPS_32 {
         let bytes = size(name, Some((x, y, 32)));
-        assert!(bytes <= 3 << 20, "{name}: {bytes} bytes for 32²");
+        assert!(bytes <= 9 << 18, "{name}: {bytes} bytes for 32²");
     }
 }
 
@@ -205,8 +204,6 @@ fn a_stochastic_surface_agrees_with_its_explicit_map() {
     let options = PlacementOptions::Stochastic(StochasticOptions::default());
     for name in ["tiny/brushed_16x16.png", "tiny/flakes_8x8.png"] {
         let e1 = surface_error(&real_maps::load(&data, name, None), &options, &SIZES, 2, EvalSettings::ACCURATE);
-        // From about a cell on, all is seen as the whole example under each transform: brushed is a third off at σ = 16, and more
-        // under a footprint of 8 by 32 texels.
         assert!(e1 <= 0.12, "{name}: mean E₁ {e1}");
     }
 }

@@ -11,8 +11,8 @@ use crate::normal_map::NormalMap;
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// Parts along a texel: windows of so many standard deviations of a part's edge, and more, see parts as points.
-const EDGES_PER_SIGMA: f64 = 4.0;
+/// Parts of an edge of a window's standard deviation over this count by what the window is in their middle, to half a per cent of E₁.
+const EDGES_PER_SIGMA: f64 = 5.5;
 /// Parts along a texel at least, as bilinear cells end in its middle, and at most.
 const PER_TEXEL: (u32, u32) = (2, 8);
 /// Samples of the normals per σ_r along a path through the disk.

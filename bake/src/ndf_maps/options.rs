@@ -36,7 +36,7 @@ pub struct NdfMapsOptions {
 
 impl Default for NdfMapsOptions {
     fn default() -> NdfMapsOptions {
-        NdfMapsOptions { roughness: 0.02, max_error: 0.03, finest_window: std::f64::consts::FRAC_1_SQRT_2 }
+        NdfMapsOptions { roughness: 0.02, max_error: 0.03, finest_window: 0.85 }
     }
 }
 

@@ -46,7 +46,7 @@ pub struct Args {
     #[arg(long, value_name = "E1", value_parser = values::positive, help_heading = "Bake")]
     pub max_error: Option<f64>,
     /// Standard deviation of the finest windows in texels, 0.25 to 8192; larger where no footprint is narrower
-    /// [default: 0.7071, the root of a half]
+    /// [default: 0.85]
     ///
     /// Narrower footprints see the map's own patches between texels, which cost more than windows. Where every footprint is
     /// as wide, finer windows are never read and only take bytes.
