@@ -147,7 +147,7 @@ fn texture_words() {
     let bytes = pack(vec![classes_section(1)]);
     let words: Vec<u32> =
         bytes[80..112].chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
-    assert_eq!(words, [2, vk_format::R8G8B8A8_UNORM, 2, 2, 1, 1, 2, 0]);
+    assert_eq!(words, [2, vk_format::R32G32B32A32_UINT, 2, 2, 1, 1, 2, 0]);
 }
 
 #[test]

@@ -146,14 +146,14 @@ pub fn placement_cases() -> Vec<Case> {
     let no_palette = PlacementParams { palette_len: 0, ..tiled() };
     let mut small_noise = without(placed(&noise_texels()), NOISE);
     small_noise.push(noise_section(&noise_texels()[..4], 1));
-    let mut deep_classes = without(placed(&noise_texels()), CLASSES);
-    deep_classes.push(classes_section(5));
+    let mut small_classes = without(placed(&noise_texels()), CLASSES);
+    small_classes.push(classes_section(1));
     vec![
         case(IssueCode::PaletteLength, ndf_with(Section::parameters(PLACEMENT, ROCK, &no_palette))),
         case(IssueCode::PaletteValue, pack(material(&ndf_params(), &tiled(), &flat, &nodes()))),
         case(IssueCode::PlacementGrid, pack(ndf_placed(&stochastic(8, 2)))),
         case(IssueCode::NoiseDescriptor, pack(small_noise)),
-        case(IssueCode::ClassesDescriptor, pack(deep_classes)),
+        case(IssueCode::ClassesDescriptor, pack(small_classes)),
     ]
 }
 

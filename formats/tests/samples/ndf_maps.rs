@@ -126,10 +126,10 @@ pub fn noise_section(texels: &[NoiseTexel], cells: u32) -> Section {
     Section::texture(NOISE, ROCK, noise_resource(cells), bytemuck::cast_slice(texels).to_vec())
 }
 
-/// A class map of 2 × 2 cells for a palette of `palette_len`.
-pub fn classes_section(palette_len: u32) -> Section {
-    let layers = palette_len.div_ceil(4) as usize;
-    Section::texture(CLASSES, ROCK, classes_resource(2, palette_len), vec![0; 20 * layers])
+/// A class map of `cells` × `cells`, a power of two.
+pub fn classes_section(cells: u32) -> Section {
+    let texels: u32 = (0..=cells.trailing_zeros() + 1).map(|mip| ((2 * cells) >> mip).pow(2)).sum();
+    Section::texture(CLASSES, ROCK, classes_resource(cells), vec![0; 16 * texels as usize])
 }
 
 /// A material of a stochastic placement of 2 × 2 cells.
