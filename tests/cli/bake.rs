@@ -128,7 +128,7 @@ fn quiet_says_nothing_and_progress_goes_to_standard_error() {
     let done = bake(folder.path(), &[&BOTH[..], &["-q"]].concat()).ok();
     assert_eq!((done.stdout.as_str(), done.stderr.as_str()), ("", ""));
     let done = bake(folder.path(), &[&BOTH[..], &["--progress", "always"]].concat()).ok();
-    assert!(done.stdout.is_empty() && done.stderr.contains("NDF maps: 201 steps"), "{}", done.stderr);
+    assert!(done.stdout.is_empty() && done.stderr.contains("NDF maps: 157 steps"), "{}", done.stderr);
     assert!(!bake(folder.path(), &BOTH).ok().stderr.contains("steps"));
 }
 
@@ -206,7 +206,7 @@ fn fine_windows_can_be_left_out() {
         levels.iter().map(|level| level["window"].as_f64().unwrap()).collect()
     };
     let (all, some, top) = (report(&[]), report(&["--finest-window", "2"]), report(&["--finest-window", "8192"]));
-    let expected: Vec<f64> = (0..8).map(|k| 0.5f64.sqrt() * 2f64.powf(0.5 * f64::from(k))).collect();
+    let expected: Vec<f64> = (0..8).map(|k| 0.85 * 2f64.powf(0.5 * f64::from(k))).collect();
     let is = |found: &[f64], expected: &[f64]| {
         let pairs = found.iter().zip(expected);
         assert!(
