@@ -112,11 +112,11 @@ fn plots_are_pictures() {
     bake(folder.path(), &args).ok();
     info(folder.path(), &["out.glintpack", "--plot", "plots", "-q"]).ok();
     let size = |name: &str| image::open(folder.path().join("plots").join(name)).unwrap().to_rgb8().dimensions();
-    // Eight nodes of the finest windows a row, in ten rows, and one of the whole example.
-    assert_eq!(size("0-a_b-nodes-0.png"), (816, 1020));
-    assert_eq!(size("0-a_b-nodes-5.png"), (320, 320));
+    // Eleven nodes of the finest windows a row, in twelve rows, and one of the whole example.
+    assert_eq!(size("0-a_b-nodes-0.png"), (935, 1020));
+    assert_eq!(size("0-a_b-nodes-6.png"), (320, 320));
     assert_eq!(size("0-a_b-normals.png"), (128, 128));
     assert_eq!(size("0-a_b-placement.png"), (768, 768));
     let svg = fs::read_to_string(folder.path().join("plots/0-a_b-errors.svg")).unwrap();
-    assert!(svg.starts_with("<svg") && svg.contains("E₁ of 157 nodes") && svg.ends_with("</svg>\n"));
+    assert!(svg.starts_with("<svg") && svg.contains("E₁ of 289 nodes") && svg.ends_with("</svg>\n"));
 }

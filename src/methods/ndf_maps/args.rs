@@ -46,7 +46,7 @@ pub struct Args {
     #[arg(long, value_name = "E1", value_parser = values::positive, help_heading = "Bake")]
     pub max_error: Option<f64>,
     /// Standard deviation of the finest windows in texels, 0.25 to 8192; larger where no footprint is narrower
-    /// [default: 0.85]
+    /// [default: 0.85, with --placement stochastic 0.6]
     ///
     /// Narrower footprints see the map's own patches between texels, which cost more than windows. Where every footprint is
     /// as wide, finer windows are never read and only take bytes.
@@ -160,8 +160,17 @@ impl Args {
         Ok(NdfMapsOptions {
             roughness: self.roughness,
             max_error: self.wanted_error(),
-            finest_window: self.finest_window.unwrap_or(NdfMapsOptions::default().finest_window),
+            finest_window: self.finest_window.unwrap_or(self.default_window()),
         })
+    }
+
+    /// Finest window where no flag says one. A place of a random placement shows several copies, each with all patches under a footprint, so
+    /// finer windows pay there.
+    pub fn default_window(&self) -> f64 {
+        match self.placement {
+            PlacementArg::Tiled => NdfMapsOptions::default().finest_window,
+            PlacementArg::Stochastic => 0.6,
+        }
     }
 
     /// Options of every map's placement.

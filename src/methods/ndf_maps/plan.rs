@@ -11,7 +11,7 @@ use glam::{DMat2, DVec2};
 use glint_bake_core::footprint::Footprint;
 use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::eval::{EvalSettings, matrix};
-use glint_bake_core::ndf_maps::options::{FINEST_WINDOW_RANGE, NdfMapsOptions};
+use glint_bake_core::ndf_maps::options::FINEST_WINDOW_RANGE;
 use glint_bake_core::ndf_maps::quality::ExactNdf;
 use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
 use glint_bake_core::ndf_maps::sections;
@@ -60,7 +60,7 @@ pub fn candidates(args: &Args, request: &Request<'_>) -> Result<Candidates, Fail
     let covering = made.iter().zip(&footprints);
     let windows = covering.map(|((map, material), footprints)| finest_window(map, material, footprints));
     let window = windows.fold(f64::INFINITY, f64::min);
-    let window = (window > NdfMapsOptions::default().finest_window).then_some(window);
+    let window = (window > args.default_window()).then_some(window);
     let sizes: Vec<Vec<Size>> = made
         .iter()
         .zip(&footprints)
