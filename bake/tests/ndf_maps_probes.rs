@@ -14,9 +14,9 @@ use std::collections::BTreeMap;
 
 /// Probes of a footprint four times as long as wide.
 const PROBES: usize = 9;
-/// Patches of a footprint as wide as the finest windows and four times as long, within two and a half standard deviations: an ellipse of
-/// 39 texels, and those on its rim.
-const PATCHES: usize = 70;
+/// Patches of a footprint as wide as the finest windows, 0.85 texels, and four times as long, within two and a half standard deviations and
+/// half a patch's diagonal: an ellipse of 82 texels, and a few on its rim.
+const PATCHES: usize = 90;
 
 /// Facets of a texel each, with no order in them.
 fn flakes() -> NormalMap {
