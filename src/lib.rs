@@ -23,4 +23,5 @@ pub mod quantities;
 pub mod reading;
 mod report;
 pub mod scene;
+mod srgb;
 pub mod textures;

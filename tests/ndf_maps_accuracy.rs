@@ -178,7 +178,7 @@ fn surface_error(
             errors.e1.mean, errors.energy.worst, errors.terms
         );
         // Patches are seen as linear, and at run time not beyond their reach: below the finest windows mass is off by more.
-        let most = if *sigma < 1.0 { 0.03 } else { 5e-3 };
+        let most = if *sigma < 1.0 { 0.02 } else { 5e-3 };
         assert!(errors.energy.worst <= most, "energy {:?} at σ {sigma}", errors.energy);
         total += errors.e1.mean;
     }
@@ -195,7 +195,7 @@ fn a_tiled_surface_agrees_with_its_explicit_map() {
     let ranges = TransformRanges { rotate_degrees: (20.0, 20.0), scale: (1.3, 1.3), ..TransformRanges::default() };
     let map = real_maps::load(&data, "tiny/brushed_16x16.png", None);
     let e1 = surface_error(&map, &PlacementOptions::Tiled(ranges), &SIZES, 2, EvalSettings::ACCURATE);
-    assert!(e1 <= 0.08, "mean E₁ {e1}");
+    assert!(e1 <= 0.035, "mean E₁ {e1}");
 }
 
 #[test]
@@ -204,7 +204,7 @@ fn a_stochastic_surface_agrees_with_its_explicit_map() {
     let options = PlacementOptions::Stochastic(StochasticOptions::default());
     for name in ["tiny/brushed_16x16.png", "tiny/flakes_8x8.png"] {
         let e1 = surface_error(&real_maps::load(&data, name, None), &options, &SIZES, 2, EvalSettings::ACCURATE);
-        assert!(e1 <= 0.12, "{name}: mean E₁ {e1}");
+        assert!(e1 <= 0.065, "{name}: mean E₁ {e1}");
     }
 }
 
@@ -218,7 +218,22 @@ fn a_pixel_of_a_tiled_surface_is_what_its_normals_say() {
         println!("{name}");
         let e1 = surface_error(&map, &options, &[(1.0, 1.0), (2.0, 1.0), (4.0, 1.0)], 4, EvalSettings::REAL_TIME);
         println!("{name}: mean E₁ of a pixel {:.1} %", 100.0 * e1);
-        assert!(e1 <= 0.1, "{name}: mean E₁ of a pixel {e1}");
+        assert!(e1 <= 0.05, "{name}: mean E₁ of a pixel {e1}");
+    }
+}
+
+/// The same where copies lie at random: from windows of one owner to the whole example under each transform, and in between.
+#[test]
+fn a_pixel_of_a_random_surface_is_what_its_normals_say() {
+    const SIZES: [(f64, f64); 7] =
+        [(1.0, 1.0), (2.8, 1.0), (4.0, 1.0), (5.6, 1.0), (8.0, 1.0), (16.0, 1.0), (4.0, 4.0)];
+    let Some(data) = real_maps::data() else { return };
+    let options = PlacementOptions::Stochastic(StochasticOptions::default());
+    for name in ["tiny/brushed_16x16.png", "tiny/flakes_8x8.png"] {
+        println!("{name}, at random");
+        let e1 = surface_error(&real_maps::load(&data, name, None), &options, &SIZES, 4, EvalSettings::REAL_TIME);
+        println!("{name}, at random: mean E₁ of a pixel {:.1} %", 100.0 * e1);
+        assert!(e1 <= 0.08, "{name}: mean E₁ of a pixel {e1}");
     }
 }
 
@@ -237,5 +252,5 @@ fn stretched_and_sheared_examples_agree_with_the_explicit_map() {
         PlacementOptions::Stochastic(StochasticOptions { ranges, palette: 6, ..StochasticOptions::default() });
     let map = real_maps::load(&data, "tiny/scratches_32x32.png", None);
     let e1 = surface_error(&map, &options, &[(1.0, 1.0), (8.0, 1.0), (40.0, 1.0)], 2, EvalSettings::ACCURATE);
-    assert!(e1 <= 0.12, "mean E₁ {e1}");
+    assert!(e1 <= 0.055, "mean E₁ {e1}");
 }

@@ -1,5 +1,7 @@
 //! Transfer functions: from a stored value to a linear one, both 0…1.
 
+use crate::srgb;
+
 /// Samples of a curve that is kept as a table.
 const SAMPLES: usize = 1024;
 
@@ -40,8 +42,7 @@ impl Transfer {
     pub fn decode(&self, v: f32) -> f32 {
         match self {
             Transfer::Linear | Transfer::Unknown => v,
-            Transfer::Srgb if v <= 0.040_45 => v / 12.92,
-            Transfer::Srgb => ((v + 0.055) / 1.055).powf(2.4),
+            Transfer::Srgb => srgb::decode(v),
             Transfer::Power(exponent) => v.max(0.0).powf(*exponent),
             Transfer::Table(_) if v.is_nan() => v,
             Transfer::Table(samples) => {

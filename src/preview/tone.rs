@@ -1,6 +1,7 @@
 //! From radiance to sRGB: a little glare around what is brighter than white, a filmic curve, the sRGB transfer function.
 
 use crate::canvas::Canvas;
+use crate::srgb;
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -62,8 +63,7 @@ fn film(v: Vec3) -> Vec3 {
 
 /// Linear 0…1 as an sRGB byte.
 fn encode(linear: f32) -> u8 {
-    let value = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::powf(linear, 1.0 / 2.4) - 0.055 };
-    (255.0 * value + 0.5) as u8
+    (255.0 * srgb::encode(linear) + 0.5) as u8
 }
 
 #[cfg(test)]

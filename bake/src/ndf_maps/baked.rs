@@ -35,6 +35,6 @@ pub struct BakedPlacement {
     pub palette: Vec<TransformRecord>,
     /// One texel a sub-region, row by row; empty when tiled.
     pub noise: Vec<NoiseTexel>,
-    /// Shares of palette entries, unorm8, in blocks of 1, 2², 4², … sub-regions, all mips; empty when tiled.
+    /// Shares of palette entries, unorm8, under Gaussian windows around sub-regions, all mips; empty when tiled.
     pub classes: Vec<[u8; MAX_PALETTE as usize]>,
 }

@@ -1,7 +1,4 @@
-//! A node's exact NDF on a fine grid: micro-normals binned and convolved with the intrinsic lobe.
-//!
-//! A normal close to the horizon carries a lobe of standard deviation σ_r whose tail would leave the disk of projected normals.
-//! The NDF of a single normal n is therefore the Gaussian divided by its mass inside the disk, so that it integrates to one.
+//! A node's exact NDF on a fine grid: the bins of the parts under its window, convolved with the intrinsic lobe.
 
 use super::normal_bins::{NormalBins, Parts};
 use super::windows::{AxisWeights, Window};
@@ -14,6 +11,7 @@ use std::ops::Range;
 const MARGIN_SIGMAS: f64 = 3.5;
 /// Points of the fine grid along one axis at most; a smaller σ_r than they resolve is widened, which the measured error shows.
 const MAX_FINE: usize = 768;
+
 /// A node's exact density at the points of a fine grid.
 pub(super) struct FineGrid {
     /// Steps of the node records from s = (−1, −1) to the first point.

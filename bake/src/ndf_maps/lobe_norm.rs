@@ -1,4 +1,7 @@
-//! The NDF of a single normal: a Gaussian divided by its mass inside the disk, so that it integrates to one.
+//! What a lobe keeps inside the disk.
+//!
+//! A normal close to the horizon carries a lobe of standard deviation σ_r whose tail would leave the disk of projected normals.
+//! The NDF of a single normal n is therefore the Gaussian divided by its mass inside the disk, so that it integrates to one.
 
 /// Reciprocal mass inside the unit disk of an isotropic Gaussian at distance r from the centre, tabulated over r.
 #[derive(Clone, Debug)]

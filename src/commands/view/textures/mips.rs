@@ -1,6 +1,7 @@
 //! Images with mips: their own, or means of the texels below, as engines make them.
 
 use crate::input::Texels;
+use crate::srgb::{decode, encode};
 use glint_bake_core::textures::levels::{shares, sizes};
 use glint_view::methods::textures::{ImageFormat, MipImage};
 use half::f16;
@@ -52,7 +53,9 @@ fn encoded(level: &[[f32; 4]], format: ImageFormat) -> Vec<u8> {
     let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
     match format {
         ImageFormat::Linear8 => level.iter().flat_map(|texel| texel.map(byte)).collect(),
-        ImageFormat::Srgb8 => level.iter().flat_map(|&[r, g, b, a]| [srgb(r), srgb(g), srgb(b), a].map(byte)).collect(),
+        ImageFormat::Srgb8 => {
+            level.iter().flat_map(|&[r, g, b, a]| [encode(r), encode(g), encode(b), a].map(byte)).collect()
+        }
         ImageFormat::Half => {
             level.iter().flat_map(|texel| texel.map(|value| f16::from_f32(value).to_ne_bytes())).flatten().collect()
         }
@@ -86,12 +89,7 @@ fn reduced(
 
 /// Light of a colour that may be encoded; alpha never is.
 fn light([r, g, b, a]: [f32; 4], srgb: bool) -> [f32; 4] {
-    let decode = |v: f32| if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
     if srgb { [decode(r), decode(g), decode(b), a] } else { [r, g, b, a] }
-}
-
-fn srgb(light: f32) -> f32 {
-    if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
 }
 
 #[cfg(test)]
