@@ -14,6 +14,7 @@ pub mod quality;
 pub mod rng;
 mod shader;
 pub mod shaders;
+pub mod windows;
 mod wrap;
 
 pub use methods::*;

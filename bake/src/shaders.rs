@@ -17,5 +17,5 @@ const GROUND: &[Shader] = &[
 
 /// Every WGSL file of the run time.
 pub fn all() -> impl Iterator<Item = &'static Shader> {
-    GROUND.iter().chain(SHADERS.iter().copied().flatten())
+    GROUND.iter().chain(crate::windows::SHADERS).chain(SHADERS.iter().copied().flatten())
 }

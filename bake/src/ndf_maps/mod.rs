@@ -11,7 +11,6 @@
 mod atlas;
 pub mod bake;
 pub mod baked;
-mod ellipse;
 pub mod eval;
 mod fine_grid;
 mod hats;
@@ -30,4 +29,4 @@ mod table_fit;
 mod view;
 pub mod windows;
 
-crate::shader::shaders!("ndf_maps": "eval", "ellipse", "view", "owners", "query");
+crate::shader::shaders!("ndf_maps": "eval", "view", "owners", "query");

@@ -6,10 +6,10 @@
 //! share that it has of the sub-regions there, where the paper visits every example.
 
 use super::baked::Material;
-use super::ellipse::{Ellipse, ellipse};
 use super::eval::{EvalSettings, NodeTerm, Terms};
 use super::view::{next_probe, patches_share, probes};
 use crate::footprint::Footprint;
+use crate::windows::ellipse::{Ellipse, ellipse};
 use glam::{DVec2, IVec2, Vec2};
 use glint_formats::ndf_maps::MAX_PALETTE;
 

@@ -154,7 +154,7 @@ fn glint_ndf_add_share(shares: ptr<function, GlintNdfShares>, class_index: u32, 
 // of its palette entry.
 fn glint_ndf_owned_windows(
     material: GlintNdfMaterial,
-    e: GlintNdfEllipse,
+    e: GlintWindowsEllipse,
     cells: GlintNdfCells,
     weight: f32,
     less: f32,
@@ -178,17 +178,17 @@ fn glint_ndf_owned_windows(
                 let at = material.palette_records + 2u * owner.class_index;
                 let position = bitcast<vec4f>(glint_ndf_record(material.layer, at));
                 let normal = bitcast<vec4f>(glint_ndf_record(material.layer, at + 1u));
-                var blend = glint_ndf_blend(material, probes.variance * abs(glint_ndf_determinant(position)));
+                var blend = glint_ndf_blend(material, probes.variance * abs(glint_windows_determinant(position)));
                 // Probes go over to the coarser level one after another.
                 blend.coarser = clamp((blend.coarser * probes.total - before) / part, 0.0, 1.0);
                 let seen = place + glint_ndf_pull(owner, probes.variance) - owner.centre;
-                let local = glint_ndf_apply(position, seen) + owner.offset;
+                let local = glint_windows_apply(position, seen) + owner.offset;
                 let share = weight * part / probes.total * owner.weight;
                 if less > 0.0 {
                     glint_ndf_add_share(shares, owner.class_index, -less * share);
                 }
-                let mass = share * abs(glint_ndf_determinant(normal));
-                let shown = glint_ndf_windows(material, local, blend, mass, glint_ndf_apply(normal, s));
+                let mass = share * abs(glint_windows_determinant(normal));
+                let shown = glint_ndf_windows(material, local, blend, mass, glint_windows_apply(normal, s));
                 sum = GlintNdfSum(sum.density + shown.density, sum.terms + shown.terms);
             }
         }
@@ -201,7 +201,7 @@ fn glint_ndf_owned_windows(
 // The patches that an ellipse's owners show, `weight` together. Takes `less` of each owner's weight off the share of its palette entry.
 fn glint_ndf_owned_patches(
     material: GlintNdfMaterial,
-    e: GlintNdfEllipse,
+    e: GlintWindowsEllipse,
     cells: GlintNdfCells,
     weight: f32,
     less: f32,
@@ -219,12 +219,12 @@ fn glint_ndf_owned_patches(
             let normal = bitcast<vec4f>(glint_ndf_record(material.layer, at + 1u));
             var from_centre = e;
             from_centre.mean -= owner.centre;
-            let local = glint_ndf_transformed(from_centre, position, owner.offset);
+            let local = glint_windows_transformed(from_centre, position, owner.offset);
             if less > 0.0 {
                 glint_ndf_add_share(shares, owner.class_index, -less * weight * owner.weight);
             }
-            let mass = weight * owner.weight * abs(glint_ndf_determinant(normal));
-            let shown = glint_ndf_patches(material, local, settings, mass, glint_ndf_apply(normal, s));
+            let mass = weight * owner.weight * abs(glint_windows_determinant(normal));
+            let shown = glint_ndf_patches(material, local, settings, mass, glint_windows_apply(normal, s));
             sum = GlintNdfSum(sum.density + shown.density, sum.terms + shown.terms);
         }
     }
@@ -298,7 +298,7 @@ fn glint_ndf_class_shares(
 // Adds, `weight` together, the shares that the palette's entries have in what the probes of an ellipse see.
 fn glint_ndf_probed_shares(
     material: GlintNdfMaterial,
-    e: GlintNdfEllipse,
+    e: GlintWindowsEllipse,
     cells: GlintNdfCells,
     weight: f32,
     shares: ptr<function, GlintNdfShares>,
@@ -330,7 +330,7 @@ fn glint_ndf_stochastic(
     s: vec2f,
 ) -> GlintNdfSum {
     let cells = glint_ndf_cells_around(material, footprint.mean);
-    var seen = glint_ndf_shortened(glint_ndf_ellipse(footprint), settings.max_ratio);
+    var seen = glint_windows_shortened(glint_windows_ellipse(footprint), settings.max_ratio);
     seen.mean = cells.mean;
     let in_example = seen.minor * material.most_texels;
     let size = in_example / f32(max(material.size.x, material.size.y));
@@ -356,8 +356,8 @@ fn glint_ndf_stochastic(
             let share = shares.groups[k / 4u][k % 4u];
             if share != 0.0 {
                 let normal = bitcast<vec4f>(glint_ndf_record(material.layer, material.palette_records + 2u * k + 1u));
-                let density = glint_ndf_node_density(material, node, glint_ndf_apply(normal, s));
-                sum.density += share * abs(glint_ndf_determinant(normal)) * density;
+                let density = glint_ndf_node_density(material, node, glint_windows_apply(normal, s));
+                sum.density += share * abs(glint_windows_determinant(normal)) * density;
                 sum.terms += 1.0;
             }
         }

@@ -4,10 +4,11 @@
 //! its cell, before it is rounded.
 
 use super::baked::Material;
-use super::ellipse::{Ellipse, ellipse};
-use super::eval::{EvalSettings, Terms, bilinear, matrix, normal_cdf};
+use super::eval::{EvalSettings, Terms, matrix};
 use super::view::{Blend, next_probe, patches_share, probes};
 use crate::footprint::Footprint;
+use crate::windows::ellipse::{Ellipse, ellipse};
+use crate::windows::patch::{bilinear, normal_cdf};
 use glam::{DVec2, Mat2, Vec2};
 use glint_formats::ndf_maps::PlacementKind;
 

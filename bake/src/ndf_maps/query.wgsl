@@ -40,9 +40,9 @@ fn glint_ndf_tiled(
     let position = bitcast<vec4f>(glint_ndf_record(material.layer, material.palette_records));
     let normal = bitcast<vec4f>(glint_ndf_record(material.layer, material.palette_records + 1u));
     let within = glint_ndf_tiled_place(material, position, footprint.mean);
-    let transformed = glint_ndf_transformed(glint_ndf_ellipse(footprint), position, within);
-    let seen = glint_ndf_shortened(transformed, settings.max_ratio);
-    let local_s = glint_ndf_apply(normal, s);
+    let transformed = glint_windows_transformed(glint_windows_ellipse(footprint), position, within);
+    let seen = glint_windows_shortened(transformed, settings.max_ratio);
+    let local_s = glint_windows_apply(normal, s);
     let in_patches = glint_ndf_patches_share(seen.minor, material.finest_variance);
     var sum = GlintNdfSum(0.0, 0.0);
     if in_patches < 1.0 {
@@ -69,7 +69,7 @@ fn glint_ndf_tiled(
         let shown = glint_ndf_patches(material, seen, settings, in_patches, local_s);
         sum = GlintNdfSum(sum.density + shown.density, sum.terms + shown.terms);
     }
-    return GlintNdfSum(abs(glint_ndf_determinant(normal)) * sum.density, sum.terms);
+    return GlintNdfSum(abs(glint_windows_determinant(normal)) * sum.density, sum.terms);
 }
 
 // The density over the disk of projected normals, at `s`, of what lies under a footprint (surface texels); 0 outside the disk.
@@ -105,7 +105,7 @@ fn glint_ndf_normal(material: GlintNdfMaterial, local: vec2f) -> vec2f {
     let f = local + 0.5 - at;
     let size = vec2f(material.size);
     let texel = glint_ndf_normal_texel(material.layer, vec2u(at - floor((at + 0.5) / size) * size));
-    return glint_ndf_bilinear(
+    return glint_windows_bilinear(
         unpack2x16snorm(texel.x), unpack2x16snorm(texel.y), unpack2x16snorm(texel.z), unpack2x16snorm(texel.w), f,
     );
 }
@@ -114,12 +114,12 @@ fn glint_ndf_normal(material: GlintNdfMaterial, local: vec2f) -> vec2f {
 fn glint_ndf_point(material: GlintNdfMaterial, class_index: u32, local: vec2f, surface_s: vec2f) -> f32 {
     let to_local = bitcast<vec4f>(glint_ndf_record(material.layer, material.palette_records + 2u * class_index + 1u));
     let normal = glint_ndf_normal(material, local);
-    let d = glint_ndf_apply(to_local, surface_s) - normal;
+    let d = glint_windows_apply(to_local, surface_s) - normal;
     let sigma = material.intrinsic_roughness;
     let radius = sqrt(dot(normal, normal));
-    let mass = max(glint_ndf_normal_cdf((1.0 - radius) / sigma), 1.0e-3);
+    let mass = max(glint_windows_normal_cdf((1.0 - radius) / sigma), 1.0e-3);
     let density = exp(-0.5 * dot(d, d) / (sigma * sigma)) / (6.2831853 * sigma * sigma * mass);
-    return abs(glint_ndf_determinant(to_local)) * density;
+    return abs(glint_windows_determinant(to_local)) * density;
 }
 
 // The density at `s` by its definition, at one point of the surface (texels): the Gaussian of the intrinsic roughness around
@@ -141,7 +141,7 @@ fn glint_ndf_density_at_point(material: GlintNdfMaterial, place: vec2f, s: vec2f
         if owner.weight > 0.0 {
             let at = material.palette_records + 2u * owner.class_index;
             let position = bitcast<vec4f>(glint_ndf_record(material.layer, at));
-            let local = glint_ndf_apply(position, cells.mean - owner.centre) + owner.offset;
+            let local = glint_windows_apply(position, cells.mean - owner.centre) + owner.offset;
             sum += owner.weight * glint_ndf_point(material, owner.class_index, local, s);
         }
     }

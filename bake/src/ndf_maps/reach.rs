@@ -4,7 +4,8 @@
 //! is set if any of its points may be reached.
 
 use super::baked::{BakedNdfMaps, Material};
-use super::eval::{CUT, bilinear, matrix};
+use super::eval::matrix;
+use crate::windows::patch::{CUT, bilinear};
 use glam::{Mat2, UVec2, Vec2};
 use glint_formats::ndf_maps::{NodeRecord, REACH_CELLS, STEPS_PER_ROUGHNESS};
 

@@ -5,8 +5,8 @@
 //! nodes each. All shares are continuous in the footprint: nothing switches.
 
 use super::baked::Material;
-use super::ellipse::Ellipse;
 use super::eval::{EvalSettings, NodeTerm, PatchTerm, Terms, matrix};
+use crate::windows::ellipse::Ellipse;
 use glam::{Mat2, Vec2, Vec3};
 
 /// Patches go over to windows from this part of the finest windows' variance on.

@@ -44,7 +44,7 @@ fn glint_ndf_weight(probes: GlintNdfProbes, k: f32) -> f32 {
 }
 
 // The probes of a footprint.
-fn glint_ndf_probes(e: GlintNdfEllipse) -> GlintNdfProbes {
+fn glint_ndf_probes(e: GlintWindowsEllipse) -> GlintNdfProbes {
     let minor2 = e.minor * e.minor;
     let more = max(e.major * e.major - minor2, 0.0);
     let step = min(GLINT_NDF_PROBE_STEP.x * e.minor, GLINT_NDF_PROBE_STEP.y * sqrt(more));
@@ -147,17 +147,17 @@ fn glint_ndf_windows(material: GlintNdfMaterial, place: vec2f, blend: GlintNdfBl
 // The patches of the map under an ellipse, `weight` together.
 fn glint_ndf_patches(
     material: GlintNdfMaterial,
-    e: GlintNdfEllipse,
+    e: GlintWindowsEllipse,
     settings: GlintNdfSettings,
     weight: f32,
     s: vec2f,
 ) -> GlintNdfSum {
     let size = vec2f(material.size);
     // The patch of the texels (i - 1, j - 1) to (i, j) has its middle at (i, j).
-    let within = glint_ndf_within(e, settings.reach, GLINT_NDF_PATCH_MARGIN);
-    let half = glint_ndf_half_height(within);
+    let within = glint_windows_within(e, settings.reach, GLINT_NDF_PATCH_MARGIN);
+    let half = glint_windows_half_height(within);
     var y = ceil(within.mean.y - half);
-    var span = glint_ndf_span_x(within, y);
+    var span = glint_windows_span_x(within, y);
     var x = ceil(span.x);
     var sum = GlintNdfSum(0.0, 0.0);
     // One loop, not two: pixels in step wait for the most patches of one of them once.
@@ -176,7 +176,7 @@ fn glint_ndf_patches(
             if !(y <= within.mean.y + half) {
                 break;
             }
-            span = glint_ndf_span_x(within, y);
+            span = glint_windows_span_x(within, y);
             x = ceil(span.x);
         }
     }

@@ -20,7 +20,7 @@ pub struct Ellipse {
 }
 
 /// A footprint as an ellipse. A point is one of the least size.
-pub(super) fn ellipse(footprint: &Footprint) -> Ellipse {
+pub(crate) fn ellipse(footprint: &Footprint) -> Ellipse {
     let (minor, major, axis) = footprint.principal();
     let [minor, major] = [minor, major].map(|sigma| (sigma as f32).max(LEAST_TEXELS));
     Ellipse { mean: footprint.mean.as_vec2(), axis: axis.as_vec2(), major, minor }
@@ -28,7 +28,7 @@ pub(super) fn ellipse(footprint: &Footprint) -> Ellipse {
 
 impl Ellipse {
     /// The ellipse in coordinates x' = m · x + offset. The minor axis follows from the area, which keeps its digits.
-    pub(super) fn transformed(&self, m: Mat2, offset: Vec2) -> Ellipse {
+    pub(crate) fn transformed(&self, m: Mat2, offset: Vec2) -> Ellipse {
         let p = m * self.axis * self.major;
         let q = m * self.axis.perp() * self.minor;
         let half_gap = Vec2::new(0.5 * (p.x * p.x + q.x * q.x - p.y * p.y - q.y * q.y), p.x * p.y + q.x * q.y);
@@ -48,23 +48,23 @@ impl Ellipse {
     }
 
     /// With a minor axis that the major one is at most `max_ratio` times.
-    pub(super) fn shortened(&self, max_ratio: f32) -> Ellipse {
+    pub(crate) fn shortened(&self, max_ratio: f32) -> Ellipse {
         Ellipse { minor: self.minor.max(self.major / max_ratio), ..*self }
     }
 
     /// The ellipse whose semi-axes are `reach` standard deviations and `margin`, as one of standard deviations.
-    pub(super) fn within(&self, reach: f32, margin: f32) -> Ellipse {
+    pub(crate) fn within(&self, reach: f32, margin: f32) -> Ellipse {
         Ellipse { major: reach * self.major + margin, minor: reach * self.minor + margin, ..*self }
     }
 
     /// Half the height of the ellipse of one standard deviation.
-    pub(super) fn half_height(&self) -> f32 {
+    pub(crate) fn half_height(&self) -> f32 {
         let e = self.axis;
         ((e.y * self.major).powi(2) + (e.x * self.minor).powi(2)).sqrt()
     }
 
     /// The range of x at height y of the ellipse of one standard deviation; empty where it does not reach.
-    pub(super) fn span_x(&self, y: f32) -> [f32; 2] {
+    pub(crate) fn span_x(&self, y: f32) -> [f32; 2] {
         let e = self.axis;
         let (p, q) = (1.0 / (self.major * self.major), 1.0 / (self.minor * self.minor));
         let a = e.x * e.x * p + e.y * e.y * q;
