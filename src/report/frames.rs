@@ -114,7 +114,8 @@ mod with_viewer {
              - *instructions*: of the whole program as SPIR-V, all lights, both sides of branches, and what constants leave out.\n\
              - *error*: sum over pixels of the luminance's difference from the method's reference over the sum of the \
              reference's; of single pixels, not of their distribution, so sparse glints weigh heavily, and the reference's own \
-             noise of its samples is in it.",
+             noise of its samples is in it.\n\
+             - *noise*: that noise, half the difference between the means of the reference's first and second half.",
         );
         document.paragraph("What bounds each, a pixel:");
         document.table(&bounds());

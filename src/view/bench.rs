@@ -1,7 +1,9 @@
 //! Time of each method over that of its smooth baseline, in one run, with the error against its reference beside it.
 
 use crate::gpu::{Gpu, GpuError};
-use crate::render::{Camera, Compare, LightKind, Overlay, Renderer, Side, Subject, View, baseline_of, picture};
+use crate::render::{
+    Camera, Compare, LightKind, Method, Overlay, Renderer, Side, Subject, View, baseline_of, further, picture,
+};
 use crate::scene::Mesh;
 use crate::settings::{Against, Settings, rect_facing};
 use crate::subjects::Subjects;
@@ -14,7 +16,7 @@ pub struct BenchSettings {
     pub size: [u32; 2],
     /// Frames of each method; their median counts.
     pub frames: u32,
-    /// Samples of the reference that the error is taken against; 0 leaves the error out.
+    /// Samples of the reference that the error is taken against, an even number; 0 leaves the error out.
     pub reference_samples: u32,
     /// Pixels of the picture in which the error is taken and look-ups are counted.
     pub error_size: [u32; 2],
@@ -66,7 +68,7 @@ impl Setup {
         let units_per_pixel =
             if shown.method.has_map() { TEXELS_PER_PIXEL / material.texels_per_unit } else { UNITS_PER_PIXEL };
         let distance = 0.5 / (0.5 * FIELD_OF_VIEW).tan();
-        let places = [("ahead", Vec3::new(0.0, 0.0, 1.0)), ("60°", Vec3::new(0.0, -0.866_025_4, 0.5))];
+        let places = [("ahead", Vec3::new(0.0, 0.0, 1.0)), ("60 degrees", Vec3::new(0.0, -0.866_025_4, 0.5))];
         places
             .map(|(name, direction)| {
                 let mut settings = settings.clone();
@@ -121,8 +123,20 @@ pub struct BenchRow {
     pub baseline_operations: f64,
     /// Instructions of the method's program as SPIR-V, all its lights and both sides of its branches.
     pub instructions: usize,
-    /// Sum over pixels of the luminance's absolute difference from the reference over the sum of the reference's.
-    pub error: Option<f64>,
+    /// Bytes of the method's data on the GPU.
+    pub bytes: u64,
+    /// How far the picture is off.
+    pub error: Option<PictureError>,
+}
+
+/// Error of a picture against the mean of samples of its reference, and the part of it that is the samples' noise. Both are sums over
+/// pixels of the luminance's absolute difference, over the sum of the reference's luminance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PictureError {
+    /// Difference of the method from the mean of all samples.
+    pub error: f64,
+    /// Difference of that mean from the one of infinitely many samples, estimated from its two halves: half of theirs.
+    pub noise: f64,
 }
 
 /// Measures the method of a setup, one of `subjects`, against its baseline.
@@ -158,6 +172,9 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
     let (operations, baseline_operations) = (operations(shown)?, operations(&setup.baseline)?);
     let source = glint_shaders::program(shown.method.name(), &shown.files);
     let instructions = glint_shaders::translate::spirv_instructions(&source).map_err(GpuError::Refused)?;
+    // What an environment shows is what lights the scene.
+    let environment = subjects.environment.as_ref().filter(|_| shown.method == Method::Environment);
+    let bytes = environment.map_or_else(|| shown.bytes(), |environment| environment.bytes);
     // Glints under an environment have no reference but their mean over seeds.
     let has_reference = shown.method.usual_light() != LightKind::Environment;
     let error = if has_reference && settings.reference_samples > 0 {
@@ -177,6 +194,7 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
         operations,
         baseline_operations,
         instructions,
+        bytes,
         error,
     })
 }
@@ -213,20 +231,24 @@ fn error_of(
     method: &View,
     reference: &View,
     samples: u32,
-) -> Result<f64, GpuError> {
+) -> Result<PictureError, GpuError> {
+    let luminances = |renderer: &Renderer, view: &View| -> Result<Vec<f64>, GpuError> {
+        let of = |p: &[f32; 4]| f64::from(p[0]) * 0.2126 + f64::from(p[1]) * 0.7152 + f64::from(p[2]) * 0.0722;
+        Ok(renderer.radiance(gpu, view, 0)?.iter().map(of).collect())
+    };
     picture(gpu, renderer, method, 1)?;
-    let found = renderer.radiance(gpu, method, 0)?;
-    picture(gpu, renderer, reference, samples)?;
-    let truth = renderer.radiance(gpu, reference, 0)?;
-    let luminance =
-        |pixel: &[f32; 4]| f64::from(pixel[0]) * 0.2126 + f64::from(pixel[1]) * 0.7152 + f64::from(pixel[2]) * 0.0722;
-    let mut difference = 0.0;
-    let mut sum = 0.0;
-    for (a, b) in found.iter().zip(&truth) {
-        difference += (luminance(a) - luminance(b)).abs();
-        sum += luminance(b);
-    }
-    Ok(difference / sum.max(f64::MIN_POSITIVE))
+    let found = luminances(renderer, method)?;
+    picture(gpu, renderer, reference, samples / 2)?;
+    let first_half = luminances(renderer, reference)?;
+    further(gpu, renderer, reference, samples / 2)?;
+    let all = luminances(renderer, reference)?;
+    Ok(PictureError { error: relative_difference(&found, &all), noise: relative_difference(&first_half, &all) })
+}
+
+/// Sum of absolute differences from `truth` over its sum.
+fn relative_difference(values: &[f64], truth: &[f64]) -> f64 {
+    let difference: f64 = values.iter().zip(truth).map(|(a, b)| (a - b).abs()).sum();
+    difference / truth.iter().sum::<f64>().max(f64::MIN_POSITIVE)
 }
 
 fn median(mut values: Vec<f64>) -> f64 {
@@ -237,12 +259,15 @@ fn median(mut values: Vec<f64>) -> f64 {
 /// The rows as a Markdown table.
 pub fn table(rows: &[BenchRow]) -> String {
     let mut text = String::from(
-        "| method | material | seen from | ms a frame | over | ratio | surface alone | look-ups | operations | instructions | error |\n| --- | --- | --- | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n",
+        "| method | material | seen from | ms a frame | over | ratio | surface alone | look-ups | operations | instructions | bytes | error | noise |\n| --- | --- | --- | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n",
     );
     for row in rows {
-        let error = row.error.map_or("".to_owned(), |error| format!("{:.1} %", 100.0 * error));
+        let percent = |part: fn(PictureError) -> f64| {
+            row.error.map_or_else(String::new, |error| format!("{:.1} %", 100.0 * part(error)))
+        };
+        let (error, noise) = (percent(|error| error.error), percent(|error| error.noise));
         text.push_str(&format!(
-            "| {} | {} | {} | {:.1} | {} | {:.2} | {:.2} | {:.1} | {:.0} of {:.0} | {} | {error} |\n",
+            "| {} | {} | {} | {:.1} | {} | {:.2} | {:.2} | {:.1} | {:.0} of {:.0} | {} | {} | {error} | {noise} |\n",
             row.method,
             row.name,
             row.view,
@@ -253,7 +278,8 @@ pub fn table(rows: &[BenchRow]) -> String {
             row.loads,
             row.operations,
             row.baseline_operations,
-            row.instructions
+            row.instructions,
+            row.bytes
         ));
     }
     text
@@ -266,5 +292,10 @@ mod tests {
     #[test]
     fn the_median_is_the_middle() {
         assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
+    }
+
+    #[test]
+    fn differences_are_relative_to_the_whole_picture() {
+        assert_eq!(relative_difference(&[1.0, 2.0, 4.0], &[1.0, 3.0, 2.0]), 0.5);
     }
 }

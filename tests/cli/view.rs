@@ -1,7 +1,9 @@
 //! `glint-view`: pictures, turntables, comparison, the list, the bench, what it refuses. Without an adapter the tests say that
 //! they are skipped; with `GLINT_REQUIRE_ADAPTER=1` they fail instead.
 
+use crate::schema::check_against;
 use crate::support::{Outcome, info, json, packs, run};
+use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
@@ -134,6 +136,35 @@ fn the_list_names_what_can_be_shown_and_the_bench_measures_it() {
 }
 
 #[test]
+fn the_bench_is_data_too() {
+    let Some(folder) = folder() else { return };
+    let folder = folder.path();
+    let packs = ["dictionary.glintpack", "light.glintpack", "sky.glintpack"];
+    let flags = ["--bench", "--json", "--frames", "1", "--size", "64x36", "--verbose"];
+    let measured = view(folder, &[&packs[..], &flags].concat()).ok();
+    assert!(measured.stderr.contains("adapter: "), "{}", measured.stderr);
+    let document = json(&measured.stdout);
+    check_against("glint-bench.schema.json", &document, "--bench --json");
+    assert_eq!(document["size"], serde_json::json!([64, 36]));
+    let rows = document["rows"].as_array().unwrap();
+    for method in ["dictionary", "area-light", "environment"] {
+        let of_method: Vec<&Value> = rows.iter().filter(|row| row["method"] == method).collect();
+        let from: Vec<&str> = of_method.iter().map(|row| row["from"].as_str().unwrap()).collect();
+        assert_eq!(from, ["ahead", "60 degrees"], "{method}");
+        for row in of_method {
+            let positive = |field: &str| row[field].as_f64().unwrap() > 0.0;
+            assert!(["ratio", "operations", "look_ups", "bytes"].into_iter().all(positive), "{row}");
+            let errors = [&row["error"], &row["noise"]];
+            assert!(errors.into_iter().all(|error| error.is_null() == (method == "environment")), "{row}");
+            if let [Some(error), Some(noise)] = errors.map(Value::as_f64) {
+                // Sparse glints may be off by more than what there is.
+                assert!((0.0..2.0).contains(&error) && (0.0..1.0).contains(&noise), "{row}");
+            }
+        }
+    }
+}
+
+#[test]
 fn what_cannot_be_shown_is_refused() {
     let folder = packs().0;
     let folder = folder.path();
@@ -145,6 +176,7 @@ fn what_cannot_be_shown_is_refused() {
     refuses(&[], 2, "PACK");
     assert!(view(folder, &["--version"]).ok().stdout.contains("reads 1.x"));
     refuses(&["none.glintpack", "--list"], 3, "none.glintpack");
+    refuses(&["dictionary.glintpack", "--json"], 2, "--bench");
     refuses(&["flakes.png", "--list"], 4, "flakes.png");
     refuses(&["dictionary.glintpack", "--headless", "none/a.png"], 3, "none");
     refuses(&["dictionary.glintpack", "--headless", "dictionary.glintpack"], 2, "an input");

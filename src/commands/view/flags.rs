@@ -43,6 +43,9 @@ pub struct PictureFlags {
     /// Print the time of a frame of each method over that of its smooth baseline, and its error
     #[arg(long, conflicts_with = "list")]
     pub bench: bool,
+    /// Print what --bench measures as JSON
+    #[arg(long, requires = "bench")]
+    pub json: bool,
     /// Pictures of --turntable; frames of --bench; with a window, frames until it closes
     ///
     /// The median of frames counts. The defaults are 36 pictures, 20 frames, and no end.

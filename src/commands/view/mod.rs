@@ -1,5 +1,7 @@
 //! `glint-view`: packs and materials in a window, as pictures, or as a bench. Only builds with the feature `view` can draw.
 
+#[cfg(feature = "view")]
+mod bench_json;
 mod flags;
 #[cfg(feature = "view")]
 mod run;

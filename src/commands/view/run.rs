@@ -1,5 +1,6 @@
 //! glint-view at work: packs and materials to the GPU, then pictures, a bench or a window.
 
+use super::bench_json;
 use super::flags::{Args, CompareWhen, LightFlag, MaterialFlags, OverlayKind, ShapeKind, TargetKind, Tone};
 use super::textures::{material_of, materials_of};
 use crate::canvas::Canvas;
@@ -8,7 +9,9 @@ use crate::exit::{Exit, Failure};
 use crate::info::Report;
 use crate::input::guarded;
 use crate::output;
+use crate::progress::Stages;
 use glam::Vec3;
+use glint_bake_core::progress::Progress;
 use glint_formats::{Limits, Pack};
 use glint_view::bench::{BenchSettings, Setup, measure, table};
 use glint_view::gpu::{AdapterChoice, Gpu, GpuError};
@@ -59,7 +62,7 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     }
     let settings = settings(args, &subjects.shown, Orbit::fit(mesh.bounds()), placement)?;
     if args.picture.bench {
-        return bench(args, &gpu, &subjects, &settings);
+        return bench(args, &gpu, &subjects, &settings, terminal);
     }
     let mut renderer = subjects.renderer(&gpu, &mesh)?;
     if let Some(path) = &args.picture.headless {
@@ -367,14 +370,21 @@ fn turntable(
 }
 
 /// Every entry on a wall that fills the picture, each in the light that it is made for.
-fn bench(args: &Args, gpu: &Gpu, subjects: &Subjects, settings: &Settings) -> Result<(), Failure> {
+fn bench(args: &Args, gpu: &Gpu, subjects: &Subjects, settings: &Settings, terminal: Terminal) -> Result<(), Failure> {
     let size = size(args);
     let bench = BenchSettings { size, frames: args.picture.frames.unwrap_or(20), ..BenchSettings::default() };
+    let walls: Vec<Setup> =
+        (0..subjects.shown.len()).flat_map(|index| Setup::of(&subjects.shown, index, settings, bench)).collect();
+    let stages = Stages::new(terminal);
+    stages.begin("bench", walls.len() as u64);
     let mut rows = Vec::new();
-    for index in 0..subjects.shown.len() {
-        for wall in Setup::of(&subjects.shown, index, settings, bench) {
-            rows.push(measure(gpu, subjects, &wall, bench)?);
-        }
+    for wall in &walls {
+        rows.push(measure(gpu, subjects, wall, bench)?);
+        stages.advance(1);
+    }
+    stages.end();
+    if args.picture.json {
+        return output::print(&bench_json::to_json(gpu, bench, &rows));
     }
     output::print(&format!("{}, {} x {}\n\n{}", gpu.adapter_line(), size[0], size[1], table(&rows)))
 }

@@ -11,7 +11,7 @@ mod targets;
 mod timing;
 mod uniforms;
 
-pub use picture::{Picture, picture, read_picture};
+pub use picture::{Picture, further, picture, read_picture};
 pub use present::{Display, Overlay, ToneMapping};
 pub use renderer::{Compare, Renderer, Side, View};
 pub use subject::{LightKind, Method, Subject, baseline_of};

@@ -18,9 +18,14 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 /// The mean of `frames` (at least 1) frames of a view; frames of a view that does not converge are equal, and one is drawn.
 pub fn picture(gpu: &Gpu, renderer: &mut Renderer, view_of: &View, frames: u32) -> Result<Picture, GpuError> {
+    renderer.restart();
+    further(gpu, renderer, view_of, frames)
+}
+
+/// The mean of the frames of a view that were drawn so far and `frames` (at least 1) more.
+pub fn further(gpu: &Gpu, renderer: &mut Renderer, view_of: &View, frames: u32) -> Result<Picture, GpuError> {
     let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
     let target = texture(gpu, view_of.size, FORMAT, usage);
-    renderer.restart();
     let frames = if view_of.converges() { frames.max(1) } else { 1 };
     for _ in 0..frames {
         renderer.frame(gpu, view_of, &view(&target), FORMAT)?;
