@@ -8,7 +8,7 @@ use super::eval::{EvalSettings, Terms, matrix};
 use super::view::{Blend, next_probe, patches_share, probes};
 use crate::footprint::Footprint;
 use crate::windows::ellipse::{Ellipse, ellipse};
-use crate::windows::patch::{bilinear, normal_cdf};
+use crate::windows::patch::{bilinear, inside_disk};
 use glam::{DVec2, Mat2, Vec2};
 use glint_formats::ndf_maps::PlacementKind;
 
@@ -79,7 +79,7 @@ impl Material {
         let normal = self.normal(local);
         let d = to_local * s - normal;
         let sigma = self.maps.params.intrinsic_roughness;
-        let mass = normal_cdf((1.0 - normal.length()) / sigma).max(1e-3);
+        let mass = inside_disk(normal, sigma);
         let density =
             (-0.5 * d.length_squared() / (sigma * sigma)).exp() / (std::f32::consts::TAU * sigma * sigma * mass);
         to_local.determinant().abs() * density

@@ -116,8 +116,7 @@ fn glint_ndf_point(material: GlintNdfMaterial, class_index: u32, local: vec2f, s
     let normal = glint_ndf_normal(material, local);
     let d = glint_windows_apply(to_local, surface_s) - normal;
     let sigma = material.intrinsic_roughness;
-    let radius = sqrt(dot(normal, normal));
-    let mass = max(glint_windows_normal_cdf((1.0 - radius) / sigma), 1.0e-3);
+    let mass = glint_windows_inside_disk(normal, sigma);
     let density = exp(-0.5 * dot(d, d) / (sigma * sigma)) / (6.2831853 * sigma * sigma * mass);
     return abs(glint_windows_determinant(to_local)) * density;
 }

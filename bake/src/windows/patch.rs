@@ -80,8 +80,17 @@ fn square_density([s00, s10, s01, s11]: [Vec2; 4], e: &Ellipse, sigma: f32, s: V
     let part = inside(seen.place.x, xx) * inside(seen.place.y + slope * moved, yy - slope * (xy - slope * within));
     let dv = (s01 - s00) * (1.0 - at.x) + (s11 - s10) * at.x;
     let normal = s00 + (s10 - s00) * at.x + dv * at.y;
-    let mass = normal_cdf((1.0 - normal.length()) / sigma).max(1e-3);
-    seen.density * part / mass
+    let density = (-0.5 * seen.far).exp() / (std::f32::consts::TAU * seen.determinant.sqrt());
+    density * part / inside_disk(normal, sigma)
+}
+
+/// Mass of the lobe of a normal inside the disk, whose rim is taken as straight.
+pub(crate) fn inside_disk(normal: Vec2, sigma: f32) -> f32 {
+    let clear = (1.0 - CUT * sigma).max(0.0);
+    if normal.length_squared() < clear * clear {
+        return 1.0;
+    }
+    normal_cdf((1.0 - normal.length()) / sigma).max(1e-3)
 }
 
 /// Beyond this many standard deviations the lobe of a normal is nothing.
@@ -101,8 +110,10 @@ fn inside(place: f32, variance: f32) -> f32 {
 /// What a projected normal says of the place it comes from, in standard deviations of the footprint along its axes: prior variance 1.
 #[derive(Clone, Copy, Debug, Default)]
 struct Seen {
-    /// Density of the normal.
-    density: f32,
+    /// Squared distance of the normal, in standard deviations of what the footprint sees.
+    far: f32,
+    /// Determinant of the covariance of what the footprint sees.
+    determinant: f32,
     /// Mean of the place.
     place: Vec2,
     /// Its covariance: xx, xy, yy.
@@ -113,19 +124,16 @@ struct Seen {
 fn seen(d: Vec2, a: Vec2, b: Vec2, sigma: f32) -> Seen {
     let sigma2 = sigma * sigma;
     let (aa, ab, bb) = (a.length_squared(), a.dot(b), b.length_squared());
-    let crossed = a.perp_dot(b);
-    // Determinants as sums of squares, so that no digits cancel.
-    let det = sigma2 * (sigma2 + aa + bb) + crossed * crossed;
-    // C⁻¹ d of the covariance C = σ² + a aᵀ + b bᵀ of normals.
-    let xx = sigma2 + a.x * a.x + b.x * b.x;
-    let xy = a.x * a.y + b.x * b.y;
-    let yy = sigma2 + a.y * a.y + b.y * b.y;
-    let w = Vec2::new(yy * d.x - xy * d.y, xx * d.y - xy * d.x) / det;
+    let (a_d, b_d, crossed) = (a.perp_dot(d), b.perp_dot(d), a.perp_dot(b));
+    // The covariance C = σ² + a aᵀ + b bᵀ of normals: det C and dᵀ (adj C) d are sums of squares, so that no digits cancel.
+    let determinant = sigma2 * (sigma2 + aa + bb) + crossed * crossed;
+    let part = 1.0 / determinant;
     Seen {
-        density: (-0.5 * d.dot(w)).exp() / (std::f32::consts::TAU * det.sqrt()),
-        place: Vec2::new(a.dot(w), b.dot(w)),
+        far: (sigma2 * d.length_squared() + a_d * a_d + b_d * b_d) * part,
+        determinant,
+        place: Vec2::new(sigma2 * a.dot(d) - crossed * b_d, sigma2 * b.dot(d) + crossed * a_d) * part,
         // (1 + (a b)ᵀ(a b)/σ²)⁻¹, whose determinant is det/σ⁴.
-        own: Vec3::new(sigma2 + bb, -ab, sigma2 + aa) * (sigma2 / det),
+        own: Vec3::new(sigma2 + bb, -ab, sigma2 + aa) * (sigma2 * part),
     }
 }
 

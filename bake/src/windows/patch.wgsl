@@ -11,11 +11,15 @@ const GLINT_WINDOWS_MOST_PARTS: f32 = 4.0;
 const GLINT_WINDOWS_LEAST_VARIANCE: f32 = 1.0e-12;
 // Steps towards the likeliest place.
 const GLINT_WINDOWS_STEPS: i32 = 2;
+// Beyond this many standard deviations the lobe of a normal is nothing.
+const GLINT_WINDOWS_CUT: f32 = 4.5;
 
 // What a projected normal says of the place it comes from, in standard deviations of the footprint along its axes: prior variance 1.
 struct GlintWindowsSeen {
-    // Density of the normal.
-    density: f32,
+    // Squared distance of the normal, in standard deviations of what the footprint sees.
+    far: f32,
+    // Determinant of the covariance of what the footprint sees.
+    determinant: f32,
     // Mean of the place.
     place: vec2f,
     // Its covariance: xx, xy, yy.
@@ -65,10 +69,9 @@ fn glint_windows_bilinear(s00: vec2f, s10: vec2f, s01: vec2f, s11: vec2f, at: ve
 
 // Whether lobes of normals between four corners reach `s`.
 fn glint_windows_square_reaches(s00: vec2f, s10: vec2f, s01: vec2f, s11: vec2f, sigma: f32, s: vec2f) -> bool {
-    // Beyond this many standard deviations a lobe is nothing.
-    let cut = 4.5;
-    let low = min(min(s00, s10), min(s01, s11)) - cut * sigma;
-    let high = max(max(s00, s10), max(s01, s11)) + cut * sigma;
+    let cut = GLINT_WINDOWS_CUT * sigma;
+    let low = min(min(s00, s10), min(s01, s11)) - cut;
+    let high = max(max(s00, s10), max(s01, s11)) + cut;
     return all(s > low) && all(s < high);
 }
 
@@ -112,13 +115,23 @@ fn glint_windows_square_density(
         * glint_windows_inside(seen.place.y + slope * moved, yy - slope * (xy - slope * within));
     let dv = (s01 - s00) * (1.0 - at.x) + (s11 - s10) * at.x;
     let normal = s00 + (s10 - s00) * at.x + dv * at.y;
-    let mass = max(glint_windows_normal_cdf((1.0 - sqrt(dot(normal, normal))) / sigma), 1.0e-3);
-    return seen.density * part / mass;
+    let density = exp(-0.5 * seen.far) * inverseSqrt(seen.determinant) * 0.15915494;
+    return density * part / glint_windows_inside_disk(normal, sigma);
+}
+
+// Mass of the lobe of a normal inside the disk, whose rim is taken as straight.
+fn glint_windows_inside_disk(normal: vec2f, sigma: f32) -> f32 {
+    let clear = max(1.0 - GLINT_WINDOWS_CUT * sigma, 0.0);
+    let square = dot(normal, normal);
+    if square < clear * clear {
+        return 1.0;
+    }
+    return max(glint_windows_normal_cdf((1.0 - sqrt(square)) / sigma), 1.0e-3);
 }
 
 // Part from 0 to 1 of a Gaussian around `place`.
 fn glint_windows_inside(place: f32, variance: f32) -> f32 {
-    let inverse = 1.0 / sqrt(max(variance, GLINT_WINDOWS_LEAST_VARIANCE));
+    let inverse = inverseSqrt(max(variance, GLINT_WINDOWS_LEAST_VARIANCE));
     return glint_windows_normal_cdf((1.0 - place) * inverse) - glint_windows_normal_cdf(-place * inverse);
 }
 
@@ -128,17 +141,17 @@ fn glint_windows_seen(d: vec2f, a: vec2f, b: vec2f, sigma: f32) -> GlintWindowsS
     let aa = dot(a, a);
     let ab = dot(a, b);
     let bb = dot(b, b);
+    let a_d = a.x * d.y - a.y * d.x;
+    let b_d = b.x * d.y - b.y * d.x;
     let crossed = a.x * b.y - a.y * b.x;
-    // Determinants as sums of squares, so that no digits cancel.
-    let det = sigma2 * (sigma2 + aa + bb) + crossed * crossed;
-    let xx = sigma2 + a.x * a.x + b.x * b.x;
-    let xy = a.x * a.y + b.x * b.y;
-    let yy = sigma2 + a.y * a.y + b.y * b.y;
-    let w = vec2f(yy * d.x - xy * d.y, xx * d.y - xy * d.x) / det;
+    // The covariance C = sigma^2 + a a^T + b b^T of normals: det C and d^T (adj C) d are sums of squares, so that no digits cancel.
+    let determinant = sigma2 * (sigma2 + aa + bb) + crossed * crossed;
+    let part = 1.0 / determinant;
     return GlintWindowsSeen(
-        exp(-0.5 * dot(d, w)) / (6.2831853 * sqrt(det)),
-        vec2f(dot(a, w), dot(b, w)),
-        vec3f(sigma2 + bb, -ab, sigma2 + aa) * (sigma2 / det),
+        (sigma2 * dot(d, d) + a_d * a_d + b_d * b_d) * part,
+        determinant,
+        vec2f(sigma2 * dot(a, d) - crossed * b_d, sigma2 * dot(b, d) + crossed * a_d) * part,
+        vec3f(sigma2 + bb, -ab, sigma2 + aa) * (sigma2 * part),
     );
 }
 
