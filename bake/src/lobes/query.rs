@@ -81,6 +81,8 @@ impl QuerySettings {
 
 /// Sum of shares below which f32 cannot tell what a footprint sees; the last level is the best that is known then.
 pub(super) const LEAST_SHARE: f32 = 1e-30;
+/// Half of a cell's mean width, over its edge.
+const HALF_WIDTH: f32 = 0.45;
 /// Cells a footprint may visit, over π and less h² (see [`BakedLobes::lod`]), at least: a map of a texel would allow none.
 const LEAST_BUDGET: f32 = 0.05;
 
@@ -174,6 +176,21 @@ impl BakedLobes {
         edge
     }
 
+    /// Level up to which a footprint reads cells of a map: from where it would visit half of the last level's on, all of them alike come
+    /// in, which serve it alone where it would visit as many as there are.
+    fn most_level(&self, frame: &Frame, settings: &QuerySettings) -> f32 {
+        let levels = self.params.levels.len();
+        // The last level of a surface is the whole.
+        if self.params.step_texels != 0 {
+            return (levels + 1) as f32;
+        }
+        let last = &self.params.levels[levels - 1];
+        let reach = settings.cells_reach / last.cell_texels as f32;
+        let visited = PI * (reach * frame.major + HALF_WIDTH) * (reach * frame.minor + HALF_WIDTH);
+        let share = 1.0 + libm::log2f(visited / (last.cells_x * last.cells_y) as f32);
+        levels as f32 + share.clamp(0.0, 1.0)
+    }
+
     /// The two levels that serve a footprint, and how they are mixed (Eq. 9).
     pub fn lod(&self, frame: &Frame, settings: &QuerySettings) -> Lod {
         let levels = self.params.levels.len();
@@ -182,7 +199,7 @@ impl BakedLobes {
         // its half axes r a, r b and h c half a cell's mean width. Solved for the σ at which they are `max_cells`.
         let a = settings.reach * frame.major;
         let b = settings.reach * frame.minor;
-        let h = 0.45;
+        let h = HALF_WIDTH;
         // A map narrower than the finest cells cuts them short, and as many times more of them lie under a footprint.
         let whole = |side: u32| (side as f32 / finest).min(1.0);
         let allowed = settings.max_cells * whole(self.params.width) * whole(self.params.height);
@@ -195,7 +212,8 @@ impl BakedLobes {
             / libm::log2f(settings.cells_from / settings.boxes_until);
         let by_count = 1.0 + libm::log2f(PI * (a + h) * (b + h) / settings.max_boxes) / settings.blend;
         let boxes = by_size.max(by_count).clamp(0.0, 1.0);
-        let lambda = if boxes < 1.0 { boxes } else { cells.clamp(1.0, (levels + 1) as f32) };
+        let cells = cells.clamp(1.0, (levels + 1) as f32).min(self.most_level(frame, settings));
+        let lambda = if boxes < 1.0 { boxes } else { cells };
         let finer = (lambda.floor() as usize).min(levels);
         let detail = |level: usize| match level {
             0 => Detail::Boxes(self.box_edge(frame, settings)),

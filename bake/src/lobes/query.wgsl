@@ -5,6 +5,8 @@
 
 // Sum of shares below which f32 cannot tell what a footprint sees; the last level is the best that is known then.
 const GLINT_LOBES_LEAST_SHARE: f32 = 1.0e-30;
+// Half of a cell's mean width, over its edge.
+const GLINT_LOBES_HALF_WIDTH: f32 = 0.45;
 // Cells a footprint may visit, over pi and less h^2 (see glint_lobes_lod), at least.
 const GLINT_LOBES_LEAST_BUDGET: f32 = 0.05;
 
@@ -100,6 +102,21 @@ fn glint_lobes_box_edge(map: GlintLobesMap, frame: GlintLobesFrame, settings: Gl
     return edge;
 }
 
+// Level up to which a footprint reads cells of a map: from where it would visit half of the last level's on, all of them alike come in,
+// which serve it alone where it would visit as many as there are.
+fn glint_lobes_most_level(map: GlintLobesMap, frame: GlintLobesFrame, settings: GlintLobesSettings) -> f32 {
+    // The last level of a surface is the whole.
+    if map.step_texels != 0u {
+        return f32(map.levels + 1u);
+    }
+    let last = glint_lobes_level(map.levels - 1u);
+    let reach = settings.cells_reach / f32(last.cell_texels);
+    let h = GLINT_LOBES_HALF_WIDTH;
+    let visited = GLINT_LOBES_PI * (reach * frame.major + h) * (reach * frame.minor + h);
+    let share = 1.0 + log2(visited / f32(last.cells_x * last.cells_y));
+    return f32(map.levels) + clamp(share, 0.0, 1.0);
+}
+
 // The two levels that serve a footprint, and how they are mixed (Eq. 9).
 fn glint_lobes_lod(map: GlintLobesMap, frame: GlintLobesFrame, settings: GlintLobesSettings) -> GlintLobesLod {
     let finest = f32(glint_lobes_level(0u).cell_texels);
@@ -107,7 +124,7 @@ fn glint_lobes_lod(map: GlintLobesMap, frame: GlintLobesFrame, settings: GlintLo
     // its half axes r a, r b and h c half a cell's mean width. Solved for the sigma at which they are `max_cells`.
     let a = settings.reach * frame.major;
     let b = settings.reach * frame.minor;
-    let h = 0.45;
+    let h = GLINT_LOBES_HALF_WIDTH;
     // A map narrower than the finest cells cuts them short, and as many times more of them lie under a footprint.
     let allowed = settings.max_cells * min(f32(map.width) / finest, 1.0) * min(f32(map.height) / finest, 1.0);
     let budget = max(allowed / GLINT_LOBES_PI - h * h, GLINT_LOBES_LEAST_BUDGET);
@@ -119,7 +136,8 @@ fn glint_lobes_lod(map: GlintLobesMap, frame: GlintLobesFrame, settings: GlintLo
     let by_count = 1.0 + log2(GLINT_LOBES_PI * (a + h) * (b + h) / settings.max_boxes) / settings.blend;
     let boxes = clamp(max(by_size, by_count), 0.0, 1.0);
     let most = f32(map.levels + 1u);
-    let lambda = select(clamp(cells, 1.0, most), boxes, boxes < 1.0);
+    let stored = min(clamp(cells, 1.0, most), glint_lobes_most_level(map, frame, settings));
+    let lambda = select(stored, boxes, boxes < 1.0);
     let finer = min(floor(lambda), f32(map.levels));
     var fraction = lambda - finer;
     var box_edge = 1.0;
