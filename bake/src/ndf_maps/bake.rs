@@ -17,7 +17,7 @@ use crate::normal_map::NormalMap;
 use crate::progress::Progress;
 use crate::quality::metrics::Summary;
 use glint_formats::Wrap;
-use glint_formats::ndf_maps::{Level, MeasuredError, NdfMapsParams, NodeRecord};
+use glint_formats::ndf_maps::{Level, MeasuredError, MomentsRecord, NdfMapsParams, NodeRecord};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -45,14 +45,16 @@ pub fn bake_maps(map: &NormalMap, options: &NdfMapsOptions, progress: &dyn Progr
     let windows = windows(map, &levels, options.finest_window * options.finest_window);
     let nodes = Nodes::new(map, &windows, options.roughness);
     progress.begin("NDF maps", windows.len() as u64);
-    let candidates: Vec<Vec<FittedTable>> = (0..windows.len())
+    let (candidates, moments): (Vec<Vec<FittedTable>>, Vec<MomentsRecord>) = (0..windows.len())
         .into_par_iter()
         .map(|node| {
-            let tables = fit_node(&nodes.fine_grid(node), options.max_error);
+            let grid = nodes.fine_grid(node);
+            let tables = fit_node(&grid, options.max_error);
             progress.advance(1);
-            tables
+            let (mean, covariance) = grid.moments();
+            (tables, MomentsRecord::new(mean, covariance))
         })
-        .collect();
+        .unzip();
     progress.end();
     let fitted = choose(&levels, candidates, USED * options.max_error);
     let atlas = atlas::pack(&fitted)?;
@@ -84,6 +86,7 @@ pub fn bake_maps(map: &NormalMap, options: &NdfMapsOptions, progress: &dyn Progr
             node_errors: errors.iter().map(|error| *error as f32).collect(),
         },
         nodes: fitted.iter().zip(&atlas.places).map(record).collect(),
+        moments,
         atlas_size: atlas.size,
         atlas: atlas.texels,
         normals: map.projected.iter().map(|s| s.map(snorm)).collect(),

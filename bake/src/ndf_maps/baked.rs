@@ -1,6 +1,8 @@
 //! What a bake of NDF maps makes: the maps of one example, and how a surface is covered with it.
 
-use glint_formats::ndf_maps::{MAX_PALETTE, NdfMapsParams, NodeRecord, NoiseTexel, PlacementParams, TransformRecord};
+use glint_formats::ndf_maps::{
+    MAX_PALETTE, MomentsRecord, NdfMapsParams, NodeRecord, NoiseTexel, PlacementParams, TransformRecord,
+};
 
 /// A material: one example's maps and how they cover the surface.
 #[derive(Clone, Debug)]
@@ -18,6 +20,8 @@ pub struct BakedNdfMaps {
     pub params: NdfMapsParams,
     /// One record a node, by level, row and column.
     pub nodes: Vec<NodeRecord>,
+    /// Mean and covariance of each node's density.
+    pub moments: Vec<MomentsRecord>,
     /// Width and height of the atlas in texels.
     pub atlas_size: [u32; 2],
     /// Roots of densities of all nodes' tables, row-major.

@@ -19,8 +19,8 @@
 struct GlintNdfMaterial {
     // Example, in texels.
     size: vec2u,
-    // 0.
-    unused: u32,
+    // First element of the nodes' moments in NMND.
+    moments: u32,
     levels: u32,
     // Standard deviation of the lobe of a normal, in the projected-normal disk.
     intrinsic_roughness: f32,

@@ -112,6 +112,26 @@ impl FineGrid {
         (core, 1.0 - kept / total.max(f64::MIN_POSITIVE))
     }
 
+    /// Mean, and covariance xx, xy, yy, of the density within the disk.
+    pub fn moments(&self) -> ([f64; 2], [f64; 3]) {
+        // About the middle, for digits.
+        let middle = self.origin + 0.5 * self.spacing * DVec2::new(self.width as f64, self.height as f64);
+        let mut sums = [0.0; 6];
+        for j in 0..self.height {
+            let y = self.origin.y + j as f64 * self.spacing - middle.y;
+            for i in self.columns_inside(j).unwrap_or_default() {
+                let x = self.origin.x + i as f64 * self.spacing - middle.x;
+                let density = f64::from(self.density[j * self.width + i]);
+                for (sum, part) in sums.iter_mut().zip([1.0, x, y, x * x, x * y, y * y]) {
+                    *sum += density * part;
+                }
+            }
+        }
+        let [mass, x, y, xx, xy, yy] = sums;
+        let [x, y, xx, xy, yy] = [x, y, xx, xy, yy].map(|sum| sum / mass.max(f64::MIN_POSITIVE));
+        ([middle.x + x, middle.y + y], [xx - x * x, xy - x * y, yy - y * y])
+    }
+
     /// Columns of row `j` whose points lie inside the unit disk; None when there are none.
     pub fn columns_inside(&self, j: usize) -> Option<Range<usize>> {
         let y = self.origin.y + j as f64 * self.spacing;

@@ -15,6 +15,7 @@ pub mod eval;
 mod fine_grid;
 mod hats;
 mod lobe_norm;
+pub mod moments;
 mod normal_bins;
 pub mod options;
 mod owners;
@@ -29,4 +30,4 @@ mod table_fit;
 mod view;
 pub mod windows;
 
-crate::shader::shaders!("ndf_maps": "eval", "view", "owners", "query");
+crate::shader::shaders!("ndf_maps": "eval", "view", "owners", "query", "moments");

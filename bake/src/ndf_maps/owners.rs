@@ -17,17 +17,17 @@ use glint_formats::ndf_maps::MAX_PALETTE;
 const FADE: f32 = 1.0;
 /// From where to where shares of transforms come in, by a footprint's minor axis in edges of the example. From there on what owners show
 /// counts by its difference from the whole example.
-const SHARES_FROM: [f32; 2] = [0.16, 0.2];
+pub(super) const SHARES_FROM: [f32; 2] = [0.16, 0.2];
 /// From where to where what owners show goes out: Gaussians so wide see all of an example that goes on beyond its edge.
-const OWNERS_UNTIL: [f32; 2] = [0.35, 0.5];
+pub(super) const OWNERS_UNTIL: [f32; 2] = [0.35, 0.5];
 /// Variance along an axis of a sub-region with the borders in which it fades, 1/12 + FADE²/20, in squares of its edge.
 const REGION_VARIANCE: f32 = 0.133_333;
 
 /// Shares of the palette's entries.
-type Shares = [f32; MAX_PALETTE as usize];
+pub(super) type Shares = [f32; MAX_PALETTE as usize];
 
 /// From 0 to 1 over a range.
-fn ramp(x: f32, [from, to]: [f32; 2]) -> f32 {
+pub(super) fn ramp(x: f32, [from, to]: [f32; 2]) -> f32 {
     ((x - from) / (to - from)).clamp(0.0, 1.0)
 }
 
@@ -42,7 +42,7 @@ pub(super) struct Cells {
     /// The cell that holds the footprint's centre, within the first period.
     base: IVec2,
     /// The footprint's centre.
-    mean: Vec2,
+    pub mean: Vec2,
 }
 
 /// The grid of `count` × `count` cells of `edge` texels around a footprint's centre.
@@ -61,13 +61,13 @@ fn unorm_pair(bits: u32) -> Vec2 {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Owner {
     /// Palette entry.
-    class: u32,
+    pub class: u32,
     /// Centre on the surface, relative to the base cell.
-    centre: Vec2,
+    pub centre: Vec2,
     /// Example point that lies at the centre.
-    offset: Vec2,
+    pub offset: Vec2,
     /// Its part of the place.
-    weight: f32,
+    pub weight: f32,
     /// How that changes along the surface, per texel.
     gradient: Vec2,
 }
@@ -92,7 +92,7 @@ impl Material {
     /// The owners of the four sub-regions around a place relative to the base cell, as a round Gaussian of a variance (texels²) there sees
     /// them: the slope of a smoothstep of width W has the variance W²/20. One that owns several has the weight of all in the first, and
     /// none in the others.
-    fn owners_at(&self, cells: Cells, place: Vec2, variance: f32) -> [Owner; 4] {
+    pub(super) fn owners_at(&self, cells: Cells, place: Vec2, variance: f32) -> [Owner; 4] {
         let edge = 0.5 * cells.edge;
         let at = place / edge - 0.5;
         let cell = at.floor();
@@ -126,7 +126,7 @@ impl Material {
 impl Owner {
     /// How far a round Gaussian of a variance (texels²) times the owner's weight lies from the Gaussian itself: variance · gradient /
     /// weight, of the weight as the Gaussian sees it.
-    fn pull(&self, variance: f32) -> Vec2 {
+    pub(super) fn pull(&self, variance: f32) -> Vec2 {
         self.gradient * (variance / self.weight)
     }
 }
@@ -247,7 +247,7 @@ impl Material {
     }
 
     /// Adds, `weight` together, the shares that the palette's entries have in what the probes of an ellipse see.
-    fn probed_shares(&self, ellipse: &Ellipse, cells: Cells, weight: f32, shares: &mut Shares) {
+    pub(super) fn probed_shares(&self, ellipse: &Ellipse, cells: Cells, weight: f32, shares: &mut Shares) {
         let probes = probes(ellipse);
         let mut seen = Shares::default();
         let mut k = 0.0;

@@ -14,7 +14,7 @@ use glint_formats::ndf_maps::PlacementKind;
 
 impl Material {
     /// The point of a tiled example that lies at a surface position, within the example.
-    fn tiled_place(&self, position: Mat2, place: DVec2) -> Vec2 {
+    pub(super) fn tiled_place(&self, position: Mat2, place: DVec2) -> Vec2 {
         let size = self.size().as_dvec2();
         let local = position.as_dmat2() * place;
         (local - (local / size).floor() * size).as_vec2()

@@ -8,9 +8,9 @@ use crate::pack_access::{bytes, names_with, parameters, records};
 use bytemuck::Pod;
 use glint_formats::binding::TABLE_WIDTH;
 use glint_formats::ndf_maps::{
-    CLASSES, DENSITY, LAYERS, LAYERS_UNIFORM, LayeredMaterial, LayersUniform, MaterialUniform, NODES, NOISE, NORMALS,
-    NdfMapsParams, NodeRecord, PARAMS, PLACEMENT, PlacementKind, PlacementParams, TransformRecord, UNIFORM,
-    UNIFORM_BYTES, atlas_resource, classes_resource, noise_resource, table,
+    CLASSES, DENSITY, LAYERS, LAYERS_UNIFORM, LayeredMaterial, LayersUniform, MaterialUniform, MomentsRecord, NODES,
+    NOISE, NORMALS, NdfMapsParams, NodeRecord, PARAMS, PLACEMENT, PlacementKind, PlacementParams, TransformRecord,
+    UNIFORM, UNIFORM_BYTES, atlas_resource, classes_resource, noise_resource, table,
 };
 use glint_formats::{Codec, FourCc, Pack, Resource, Section, vk_format};
 
@@ -18,16 +18,17 @@ use glint_formats::{Codec, FourCc, Pack, Resource, Section, vk_format};
 pub fn to_sections(name: &str, material: &Material, codec: Codec) -> Vec<Section> {
     let Material { maps, placement } = material;
     let header = MaterialUniform::new(&maps.params, &placement.params, maps.atlas_size, material.most_texels());
-    let mut nodes = maps.nodes.clone();
-    nodes.resize(nodes.len().next_multiple_of(TABLE_WIDTH as usize), NodeRecord::default());
-    let node_table = table(vk_format::R32G32B32A32_UINT, maps.params.node_count());
+    let mut nodes: Vec<u8> = bytemuck::cast_slice(&maps.nodes).to_vec();
+    nodes.extend_from_slice(bytemuck::cast_slice(&maps.moments));
+    nodes.resize(nodes.len().next_multiple_of(TABLE_WIDTH as usize * size_of::<NodeRecord>()), 0);
+    let node_table = table(vk_format::R32G32B32A32_UINT, maps.params.node_elements());
     let mut sections = vec![
         Section::parameters(PARAMS, name, &maps.params),
         Section {
             resource: Resource::Buffer { stride: UNIFORM_BYTES as u32, count: 1 },
             ..Section::buffer(UNIFORM, name, &uniform_bytes(material, &header))
         },
-        Section::texture(NODES, name, node_table, bytemuck::cast_slice(&nodes).to_vec()),
+        Section::texture(NODES, name, node_table, nodes),
         Section::texture(DENSITY, name, atlas_resource(maps.atlas_size), maps.atlas.clone()),
     ];
     let normals = bytemuck::cast_slice(&normal_patches(maps)).to_vec();
@@ -109,11 +110,10 @@ pub fn from_pack(pack: &Pack, name: &str) -> Result<Material> {
     let header: MaterialUniform = bytemuck::pod_read_unaligned(header);
     let palette: Vec<TransformRecord> =
         read(from_uniform, header.palette_records, placement_params.palette_len as usize).ok_or(short(UNIFORM))?;
-    let mut nodes: Vec<NodeRecord> = records(pack, NODES, name)?;
-    if (nodes.len() as u64) < maps_params.node_count() {
-        return Err(short(NODES));
-    }
-    nodes.truncate(maps_params.node_count() as usize);
+    let table = bytes(pack, NODES, name)?;
+    let count = maps_params.node_count() as usize;
+    let nodes: Vec<NodeRecord> = read(&table, 0, count).ok_or(short(NODES))?;
+    let moments: Vec<MomentsRecord> = read(&table, header.moments, count).ok_or(short(NODES))?;
     let atlas = bytes(pack, DENSITY, name)?;
     let atlas_size = match pack.find(DENSITY, name).map(|entry| entry.resource) {
         Some(Resource::Texture { width, height, .. }) if u64::from(width) * u64::from(height) == atlas.len() as u64 => {
@@ -130,7 +130,7 @@ pub fn from_pack(pack: &Pack, name: &str) -> Result<Material> {
         (Vec::new(), Vec::new())
     };
     Ok(Material {
-        maps: BakedNdfMaps { params: maps_params, nodes, atlas_size, atlas, normals },
+        maps: BakedNdfMaps { params: maps_params, nodes, moments, atlas_size, atlas, normals },
         placement: BakedPlacement { params: placement_params, palette, noise, classes },
     })
 }

@@ -102,8 +102,8 @@ impl Material {
         Blend { level, coarser: ratio * f32::from_bits((127 - level) << 23) - 1.0 }
     }
 
-    /// Adds the three nodes of a level around the example point `place`, `weight` together: the corners of its triangle.
-    fn triangle(&self, class: u32, level: u32, place: Vec2, weight: f32, terms: &mut Terms) {
+    /// The three nodes of a level around the example point `place`, the corners of its triangle, and their shares.
+    fn corners(&self, level: u32, place: Vec2) -> ([u32; 3], [f32; 3]) {
         let record = self.maps.params.levels[level as usize];
         let nodes = Vec2::new(record.nodes_x as f32, record.nodes_y as f32);
         let mut at = place / self.size() * nodes;
@@ -117,13 +117,21 @@ impl Material {
         let weights =
             if upper { Vec3::new(1.0 - f.x - f.y, f.x, f.y) } else { Vec3::new(f.x + f.y - 1.0, 1.0 - f.y, 1.0 - f.x) };
         let corners = [corner, Vec2::new(cell.x + 1.0, cell.y), Vec2::new(cell.x, cell.y + 1.0)];
-        for (corner, share) in corners.into_iter().zip(weights.to_array()) {
+        let node = |corner: Vec2| {
             // Around the example once along y is half as many columns as rows along x.
             let around = ((corner.y + 0.5) / nodes.y).floor();
             let column = corner.x + 0.5 * around * nodes.y * if record.nodes_y == 1 { 0.0 } else { 1.0 };
             let i = column - ((column + 0.5) / nodes.x).floor() * nodes.x;
             let j = corner.y - around * nodes.y;
-            let node = record.first_node + j as u32 * record.nodes_x + i as u32;
+            record.first_node + j as u32 * record.nodes_x + i as u32
+        };
+        (corners.map(node), weights.to_array())
+    }
+
+    /// Adds the three nodes of a level around the example point `place`, `weight` together.
+    fn triangle(&self, class: u32, level: u32, place: Vec2, weight: f32, terms: &mut Terms) {
+        let (nodes, shares) = self.corners(level, place);
+        for (node, share) in nodes.into_iter().zip(shares) {
             terms.nodes.push(NodeTerm { node, class, weight: weight * share });
         }
     }

@@ -96,13 +96,14 @@ fn glint_ndf_blend(material: GlintNdfMaterial, variance: f32) -> GlintNdfBlend {
     return GlintNdfBlend(level, ratio * bitcast<f32>((127u - level) << 23u) - 1.0);
 }
 
-// The three nodes of a level around the example point `place`: the corners of its triangle.
-fn glint_ndf_triangle(
-    material: GlintNdfMaterial,
-    level: u32,
-    place: vec2f,
-    s: vec2f,
-) -> f32 {
+// Three nodes and their shares.
+struct GlintNdfCorners {
+    nodes: vec3u,
+    shares: vec3f,
+}
+
+// The three nodes of a level around the example point `place`, the corners of its triangle, and their shares.
+fn glint_ndf_corners(material: GlintNdfMaterial, level: u32, place: vec2f) -> GlintNdfCorners {
     let record = glint_ndf_record(material.layer, level);
     let nodes = vec2f(record.xy);
     // One row alone is not shifted.
@@ -123,10 +124,20 @@ fn glint_ndf_triangle(
     let x = vec3f(corner.x, cell.x + 1.0, cell.x) + shifted * nodes.y * around;
     let i = vec3u(x - floor((x + 0.5) / nodes.x) * nodes.x);
     let j = vec3u(y - around * nodes.y);
-    let at_node = record.z + j * record.x + i;
-    return weights.x * glint_ndf_node_density(material, at_node.x, s)
-        + weights.y * glint_ndf_node_density(material, at_node.y, s)
-        + weights.z * glint_ndf_node_density(material, at_node.z, s);
+    return GlintNdfCorners(record.z + j * record.x + i, weights);
+}
+
+// The three nodes of a level around the example point `place`.
+fn glint_ndf_triangle(
+    material: GlintNdfMaterial,
+    level: u32,
+    place: vec2f,
+    s: vec2f,
+) -> f32 {
+    let found = glint_ndf_corners(material, level, place);
+    return found.shares.x * glint_ndf_node_density(material, found.nodes.x, s)
+        + found.shares.y * glint_ndf_node_density(material, found.nodes.y, s)
+        + found.shares.z * glint_ndf_node_density(material, found.nodes.z, s);
 }
 
 // The windows around the example point `place` that stand for a round Gaussian: those of a level and `coarser` of the next.

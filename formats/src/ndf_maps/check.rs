@@ -6,9 +6,9 @@ use crate::container::Resource;
 use crate::issue::{Issue, IssueCode};
 use crate::ndf_maps::{
     CLASSES, DENSITY, LAYERS, LAYERS_UNIFORM, LayeredMaterial, LayersUniform, Level, MAX_EDGE, MAX_LEVELS, MAX_PALETTE,
-    MaterialUniform, NODES, NOISE, NORMALS, NdfMapsParams, NodeRecord, NoiseTexel, PARAMS, PLACEMENT, PlacementKind,
-    PlacementParams, REACH_CELLS, TransformRecord, UNIFORM, UNIFORM_BYTES, atlas_resource, classes_resource,
-    noise_resource, table,
+    MaterialUniform, MomentsRecord, NODES, NOISE, NORMALS, NdfMapsParams, NodeRecord, NoiseTexel, PARAMS, PLACEMENT,
+    PlacementKind, PlacementParams, REACH_CELLS, TransformRecord, UNIFORM, UNIFORM_BYTES, atlas_resource,
+    classes_resource, noise_resource, table,
 };
 use crate::sections::{Loaded, Sections};
 use crate::vk_format;
@@ -61,7 +61,7 @@ fn check_material(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec
         let message = format!("expected an error for each of {count} nodes, found {errors}");
         issues.push(section.error(IssueCode::NdfNodeCount, message));
     }
-    let nodes = nodes.filter(|nodes| check_node_table(*nodes, count, issues));
+    let nodes = nodes.filter(|nodes| check_node_table(*nodes, &params, issues));
     let Some(atlas) = atlas else { return };
     if let Some(nodes) = nodes {
         check_nodes(nodes, count, &atlas, issues);
@@ -195,15 +195,20 @@ fn check_level(level: &Level, first_node: u64, finer: [u32; 2]) -> Result<(), St
 }
 
 /// Whether the table has a record a node and nothing else; reports it when it has not.
-fn check_node_table(nodes: Loaded<'_>, count: u64, issues: &mut Vec<Issue>) -> bool {
-    if !nodes.expect(IssueCode::NdfNodeCount, table(vk_format::R32G32B32A32_UINT, count), issues) {
+fn check_node_table(nodes: Loaded<'_>, params: &NdfMapsParams, issues: &mut Vec<Issue>) -> bool {
+    let shape = table(vk_format::R32G32B32A32_UINT, params.node_elements());
+    if !nodes.expect(IssueCode::NdfNodeCount, shape, issues) {
         return false;
     }
-    let used = count as usize * size_of::<NodeRecord>();
+    let count = params.node_count();
+    let used = count as usize * (size_of::<NodeRecord>() + size_of::<MomentsRecord>());
     let rest = nodes.payload[used..].iter().position(|byte| *byte != 0);
     if let Some(at) = rest {
-        let message =
-            format!("expected zeros after {count} nodes, found {} at byte {}", nodes.payload[used + at], used + at);
+        let message = format!(
+            "expected zeros after {count} nodes and their moments, found {} at byte {}",
+            nodes.payload[used + at],
+            used + at
+        );
         issues.push(nodes.error(IssueCode::NdfNodeCount, message));
     }
     rest.is_none()

@@ -17,7 +17,8 @@ pub const PARAMS: FourCc = FourCc(*b"NMPP");
 /// Uniform bytes: buffer of one element of [`UNIFORM_BYTES`], a [`MaterialUniform`] and [`RECORDS`] records of four u32. Records are
 /// the levels, the palette and the reach mask; the rest is zero.
 pub const UNIFORM: FourCc = FourCc(*b"NMUB");
-/// Nodes of all levels, level after level, row by row: table of R32G32B32A32_UINT, an element a [`NodeRecord`].
+/// Nodes of all levels, level after level, row by row: table of R32G32B32A32_UINT, an element a [`NodeRecord`]; after them, from element
+/// [`MaterialUniform::moments`] on, their [`MomentsRecord`]s, two an element.
 pub const NODES: FourCc = FourCc(*b"NMND");
 /// Atlas of the nodes' tables: texture R8_UNORM, a texel the square root of a density over that of its node's [`NodeRecord::scale`].
 /// Texels that belong to no table are zero, one at least around each.
@@ -96,8 +97,8 @@ pub const MAX_PALETTE: u32 = 16;
 pub struct MaterialUniform {
     /// Width and height of the example in texels.
     pub size: [u32; 2],
-    /// 0.
-    pub unused: u32,
+    /// First element of the nodes' moments in the table of nodes: the number of nodes.
+    pub moments: u32,
     /// Levels; their records come first: nodes_x, nodes_y, first_node, 0.
     pub levels: u32,
     /// Intrinsic roughness σ_r.
@@ -139,7 +140,7 @@ impl MaterialUniform {
         let levels = maps.levels.len() as u32;
         MaterialUniform {
             size: [maps.width, maps.height],
-            unused: 0,
+            moments: maps.node_count() as u32,
             levels,
             intrinsic_roughness: maps.intrinsic_roughness,
             steps: STEPS_PER_ROUGHNESS / maps.intrinsic_roughness,
@@ -242,6 +243,12 @@ impl NdfMapsParams {
         self.levels.iter().fold(0, |sum, level| sum.saturating_add(level.nodes()))
     }
 
+    /// Elements of the table [`NODES`]: nodes, then their moments.
+    pub fn node_elements(&self) -> u64 {
+        let count = self.node_count();
+        count.saturating_add(count.div_ceil(2))
+    }
+
     /// Descriptor of [`NORMALS`].
     pub fn normals_resource(&self) -> Resource {
         let (width, height) = (self.width, self.height);
@@ -283,6 +290,46 @@ impl NodeRecord {
     /// Distance of texels in steps.
     pub fn spacing(&self) -> [u32; 2] {
         [self.shape >> 16 & 0xff, self.shape >> 24]
+    }
+}
+
+/// Mean and covariance of a node's density over the disk of projected normals: what light from all around sees of it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct MomentsRecord {
+    /// Mean, snorm16: x | y << 16.
+    pub mean: u32,
+    /// Square roots of the standard deviations along x (bits 0–10) and y (bits 11–21), unorm; correlation (bits 22–31), 0 is −1 and 1023
+    /// is 1.
+    pub spread: u32,
+}
+
+impl MomentsRecord {
+    /// The record of a mean and the covariance xx, xy, yy. Standard deviations above 1 count as 1.
+    pub fn new(mean: [f64; 2], [xx, xy, yy]: [f64; 3]) -> MomentsRecord {
+        let snorm = |v: f64| u32::from(((v.clamp(-1.0, 1.0) * 32767.0).round() as i16).cast_unsigned());
+        let deviations = [xx, yy].map(|variance| variance.max(0.0).sqrt());
+        let [x, y] = deviations.map(|deviation| (deviation.min(1.0).sqrt() * 2047.0).round() as u32);
+        let product = deviations[0] * deviations[1];
+        let correlation = if product > 0.0 { (xy / product).clamp(-1.0, 1.0) } else { 0.0 };
+        let correlation = ((0.5 * correlation + 0.5) * 1023.0).round() as u32;
+        MomentsRecord { mean: snorm(mean[0]) | snorm(mean[1]) << 16, spread: x | y << 11 | correlation << 22 }
+    }
+
+    /// Mean of projected normals.
+    pub fn mean(self) -> [f32; 2] {
+        [self.mean & 0xffff, self.mean >> 16].map(|bits| (f32::from((bits as u16).cast_signed()) / 32767.0).max(-1.0))
+    }
+
+    /// Covariance xx, xy, yy of projected normals.
+    pub fn covariance(self) -> [f32; 3] {
+        let deviation = |bits: u32| {
+            let root = (bits & 0x7ff) as f32 / 2047.0;
+            root * root
+        };
+        let (x, y) = (deviation(self.spread), deviation(self.spread >> 11));
+        let correlation = (self.spread >> 22) as f32 * (2.0 / 1023.0) - 1.0;
+        [x * x, correlation * x * y, y * y]
     }
 }
 

@@ -2,8 +2,9 @@
 
 use crate::support::{QUERIES, compare, gpu, random, real_map};
 use bytemuck::{Pod, Zeroable};
-use glam::{DMat2, DVec2, Vec2};
+use glam::{DMat2, DVec2, Vec2, Vec3};
 use glint_bake_core::footprint::Footprint;
+use glint_bake_core::moments::{pdf, rough_normal, sample};
 use glint_bake_core::ndf_maps::bake::bake_maps;
 use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::eval::{EvalSettings, matrix};
@@ -32,7 +33,7 @@ struct Query {
     max_ratio: f32,
     reach: f32,
     layer: u32,
-    unused: [u32; 2],
+    random: [f32; 2],
 }
 
 /// `NdfMapsAnswer`.
@@ -43,7 +44,16 @@ struct Answer {
     terms: f32,
     reached: f32,
     at_point: f32,
+    mean: Vec2,
+    covariance: [f32; 3],
+    unused: f32,
+    alpha: Vec2,
+    light: Vec3,
+    pdf: f32,
 }
+
+/// `NDF_MAPS_VIEW`.
+const VIEW: Vec3 = Vec3::new(0.36, -0.48, 0.8);
 
 impl Query {
     fn new(footprint: &Footprint, s: Vec2, settings: EvalSettings, layer: u32) -> Query {
@@ -55,7 +65,7 @@ impl Query {
             max_ratio: settings.max_ratio,
             reach: settings.reach,
             layer,
-            unused: [0; 2],
+            random: [0.0; 2],
         }
     }
 
@@ -239,6 +249,38 @@ fn the_density_of_the_shader_is_that_of_the_cpu() {
 }
 
 #[test]
+fn the_moments_of_the_shader_are_those_of_the_cpu() {
+    let Some(gpu) = gpu() else { return };
+    let mut pairs = Vec::new();
+    for (k, pair) in samples().iter().enumerate() {
+        let layers = [&pair[0], &pair[1]];
+        let mut rng = random(60 + k as u64);
+        let mut queries = queries(&mut rng, layers, 2600);
+        queries.iter_mut().for_each(|query| query.random = [rng.random(), rng.random()]);
+        for (query, answer) in queries.iter().zip(ask(gpu, layers, &queries)) {
+            let moments = layers[query.layer as usize].material.moments(&query.footprint(), query.settings());
+            let rough = rough_normal(moments);
+            let [x, y] = query.random;
+            let light = sample(moments, VIEW, Vec3::new(x, y, x));
+            pairs.extend([
+                (answer.mean.x, moments.mean.x),
+                (answer.mean.y, moments.mean.y),
+                (answer.covariance[0].sqrt(), moments.covariance.x.sqrt()),
+                (answer.covariance[1], moments.covariance.y),
+                (answer.covariance[2].sqrt(), moments.covariance.z.sqrt()),
+                (answer.alpha.x, rough.alpha.x),
+                (answer.alpha.y, rough.alpha.y),
+                (answer.light.x, light.x),
+                (answer.light.z, light.z),
+                // Over that of a peak of the width of a lobe.
+                (answer.pdf * 0.02, pdf(moments, VIEW, light) * 0.02),
+            ]);
+        }
+    }
+    compare("NDF maps, moments and samples", pairs.into_iter());
+}
+
+#[test]
 fn a_real_map_gives_the_same_on_both() {
     let Some(gpu) = gpu() else { return };
     let Some(map) = real_map("tiny/scratches_32x32.png") else { return };
@@ -403,7 +445,7 @@ fn the_uniform_lies_as_the_shader_reads_it() {
         "GlintNdfMaterial",
         MaterialUniform,
         size,
-        unused,
+        moments,
         levels,
         intrinsic_roughness,
         steps,
