@@ -3,13 +3,31 @@
 use crate::samples::*;
 use glint_formats::Wrap;
 use glint_formats::container::{FourCc, Limits};
-use glint_formats::ndf_maps::{NodeRecord, PlacementKind, PlacementParams};
+use glint_formats::ndf_maps::{MomentsRecord, NodeRecord, PlacementKind, PlacementParams};
 use glint_formats::{Pack, Section, params, vk_format};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Joins fields.
 fn join(fields: &[&[u8]]) -> Vec<u8> {
     fields.concat()
+}
+
+#[test]
+fn moments_keep_their_mean_and_covariance() {
+    for (mean, [x, y], correlation) in
+        [([0.3, -0.7], [0.2, 0.05], 0.4), ([-1.0, 1.0], [1.0, 1e-3], -1.0), ([0.0, 0.0], [0.0, 0.0], 0.0)]
+    {
+        let covariance: [f64; 3] = [x * x, correlation * x * y, y * y];
+        let record = MomentsRecord::new(mean, covariance);
+        for (found, expected) in record.mean().into_iter().zip(mean) {
+            assert!((f64::from(found) - expected).abs() < 2e-5, "{record:?}");
+        }
+        let [xx, xy, yy] = record.covariance().map(f64::from);
+        // Steps are finer for small deviations, that of the correlation is 1/512.
+        assert!((xx.sqrt() - x).abs() <= 1e-3 * x.sqrt() && (yy.sqrt() - y).abs() <= 1e-3 * y.sqrt(), "{record:?}");
+        let product = (xx * yy).sqrt();
+        assert!((xy - correlation * product).abs() <= 1.1e-3 * product, "{record:?}: {xy}");
+    }
 }
 
 #[test]

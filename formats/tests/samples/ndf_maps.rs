@@ -27,9 +27,12 @@ pub fn nodes() -> Vec<NodeRecord> {
     [1, 4, 7].map(|x| NodeRecord { place: x | 1 << 16, ..node }).to_vec()
 }
 
+/// Nodes and a mean and covariance of each.
 pub fn nodes_section(nodes: &[NodeRecord]) -> Section {
     let resource = table(vk_format::R32G32B32A32_UINT, nodes.len() as u64);
     let mut payload: Vec<u8> = bytemuck::cast_slice(nodes).to_vec();
+    let moments = vec![MomentsRecord::new([0.1, -0.2], [0.01, 0.002, 0.02]); nodes.len()];
+    payload.extend_from_slice(bytemuck::cast_slice(&moments));
     payload.resize(resource.byte_len().unwrap().unwrap() as usize, 0);
     Section::texture(NODES, ROCK, resource, payload).compressed()
 }

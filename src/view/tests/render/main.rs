@@ -4,6 +4,7 @@
 mod adapter;
 mod bound;
 mod furnace;
+mod indirect;
 mod pictures;
 mod subjects;
 mod zoom;

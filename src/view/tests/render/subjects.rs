@@ -54,13 +54,17 @@ fn map(width: u32, height: u32) -> NormalMap {
 }
 
 fn ndf_maps_pack() -> Pack {
-    let map = map(12, 12);
+    ndf_maps_pack_of(&map(12, 12))
+}
+
+/// A map tiled and placed at random.
+pub fn ndf_maps_pack_of(map: &NormalMap) -> Pack {
     let options = NdfMapsOptions { roughness: 0.05, max_error: 0.03, ..NdfMapsOptions::default() };
     let stochastic = StochasticOptions { palette: 8, cells: 8, ..StochasticOptions::default() };
     let placements = [PlacementOptions::Tiled(Default::default()), PlacementOptions::Stochastic(stochastic)];
     let sections = ["tiled", "stochastic"].into_iter().zip(placements).flat_map(|(name, placement)| {
-        let placement = place(&map, options.roughness, &placement).unwrap();
-        let maps = ndf_maps::bake::bake_maps(&map, &options, &Silent).unwrap();
+        let placement = place(map, options.roughness, &placement).unwrap();
+        let maps = ndf_maps::bake::bake_maps(map, &options, &Silent).unwrap();
         ndf_maps::sections::to_sections(name, &baked::Material { maps, placement }, Codec::None)
     });
     pack(sections.collect())
@@ -83,7 +87,8 @@ fn surface_pack() -> Pack {
     pack(surface::sections::to_sections("patches", &baked, Codec::None))
 }
 
-fn environment_pack() -> Pack {
+/// An even sky with lamps.
+pub fn environment_pack() -> Pack {
     const HEIGHT: u32 = 32;
     let mut pixels = Vec::new();
     for y in 0..HEIGHT {
