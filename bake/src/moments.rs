@@ -46,14 +46,14 @@ pub(crate) struct MomentSums {
 
 impl MomentSums {
     /// Adds a part with its weight.
-    pub(crate) fn add(&mut self, weight: f32, part: Moments) {
+    pub(crate) fn moments_add(&mut self, weight: f32, part: Moments) {
         let Vec2 { x, y } = part.mean;
         self.mean += weight * part.mean;
         self.second += weight * (part.covariance + Vec3::new(x * x, x * y, y * y));
     }
 
     /// Moments of the whole, whose variance is at least `least` along every axis.
-    pub(crate) fn whole(&self, least: f32) -> Moments {
+    pub(crate) fn moments_whole(&self, least: f32) -> Moments {
         let Vec2 { x, y } = self.mean;
         let covariance = self.second - Vec3::new(x * x, x * y, y * y);
         let (xx, yy) = (covariance.x.max(least), covariance.z.max(least));
@@ -95,9 +95,9 @@ pub fn rough_normal(moments: Moments) -> RoughNormal {
     }
 }
 
-/// A direction that light may come from, for a random number from 0 to 1 in each of three dimensions; its density is [`pdf`]. A length of
+/// A direction that light may come from, for a random number from 0 to 1 in each of three dimensions; its density is [`moments_pdf`]. A length of
 /// 0 means that this sample has none: its half vector lies outside the disk or turns away.
-pub fn sample(moments: Moments, view: Vec3, random: Vec3) -> Vec3 {
+pub fn moments_sample(moments: Moments, view: Vec3, random: Vec3) -> Vec3 {
     let (sin, cos) = (TAU * random.y).sin_cos();
     let s = if random.z < EVEN {
         random.x.sqrt() * Vec2::new(cos, sin)
@@ -118,9 +118,9 @@ pub fn sample(moments: Moments, view: Vec3, random: Vec3) -> Vec3 {
     if cosine > 0.0 && light.z > 0.0 { light } else { Vec3::ZERO }
 }
 
-/// Density over solid angle of [`sample`] at the unit direction `light`, given a unit direction `view`: a Gaussian and an even part over
+/// Density over solid angle of [`moments_sample`] at the unit direction `light`, given a unit direction `view`: a Gaussian and an even part over
 /// projected half vectors s, ds = cos θ_h dω_h and dω_h = dω / (4 v·h). Its integral is below 1 by the samples without a direction.
-pub fn pdf(moments: Moments, view: Vec3, light: Vec3) -> f32 {
+pub fn moments_pdf(moments: Moments, view: Vec3, light: Vec3) -> f32 {
     let half = half_vector(view, light);
     if light.z <= 0.0 || half.z <= 0.0 {
         return 0.0;

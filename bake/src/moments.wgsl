@@ -55,7 +55,7 @@ fn glint_moments_whole(sums: GlintMomentSums, least: f32) -> GlintMoments {
 }
 
 // The rough surface of these moments.
-fn glint_moments_rough_normal(moments: GlintMoments) -> GlintRoughNormal {
+fn glint_rough_normal(moments: GlintMoments) -> GlintRoughNormal {
     let least = GLINT_MOMENTS_LEAST_COSINE;
     let far = sqrt(dot(moments.mean, moments.mean));
     let length = min(far, sqrt(1.0 - least * least));

@@ -4,7 +4,7 @@
 use glam::{DVec2, Vec2, Vec3};
 use glint_bake_core::brdf::facet_brdf;
 use glint_bake_core::footprint::Footprint;
-use glint_bake_core::moments::{Moments, pdf, rough_normal, sample};
+use glint_bake_core::moments::{Moments, moments_pdf, moments_sample, rough_normal};
 use glint_bake_core::ndf_maps::bake::bake_maps;
 use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::eval::{EvalSettings, matrix};
@@ -140,7 +140,7 @@ fn samples_have_the_density_that_is_said() {
     let mut counts = vec![0.0f64; BINS.0 * BINS.1];
     let mut rng = Pcg64::seed_from_u64(7);
     for _ in 0..SAMPLES {
-        let light = sample(TILTED, VIEW, Vec3::new(rng.random(), rng.random(), rng.random()));
+        let light = moments_sample(TILTED, VIEW, Vec3::new(rng.random(), rng.random(), rng.random()));
         if light.z > 0.0 {
             let column = ((light.y.atan2(light.x) / TAU + 0.5) * BINS.1 as f32) as usize % BINS.1;
             counts[((light.z * BINS.0 as f32) as usize).min(BINS.0 - 1) * BINS.1 + column] += 1.0;
@@ -153,7 +153,7 @@ fn samples_have_the_density_that_is_said() {
             let z = ((k / BINS.1) as f32 + ((sub / FINE) as f32 + 0.5) / FINE as f32) / BINS.0 as f32;
             let phi = (((k % BINS.1) as f32 + ((sub % FINE) as f32 + 0.5) / FINE as f32) / BINS.1 as f32 - 0.5) * TAU;
             let radius = (1.0 - z * z).sqrt();
-            expected += f64::from(pdf(TILTED, VIEW, Vec3::new(radius * phi.cos(), radius * phi.sin(), z)));
+            expected += f64::from(moments_pdf(TILTED, VIEW, Vec3::new(radius * phi.cos(), radius * phi.sin(), z)));
         }
         expected *= f64::from(SAMPLES) * f64::from(TAU) / (BINS.0 * BINS.1 * FINE * FINE) as f64;
         inside += expected;
@@ -200,8 +200,9 @@ fn the_mean_of_sampled_weights_is_the_albedo() {
         const SAMPLES: u32 = 200_000;
         let (mut sum, mut square) = (0.0, 0.0);
         for _ in 0..SAMPLES {
-            let light = sample(moments, VIEW, Vec3::new(rng.random(), rng.random(), rng.random()));
-            let weight = if light.z > 0.0 { f64::from(reflected(light) / pdf(moments, VIEW, light)) } else { 0.0 };
+            let light = moments_sample(moments, VIEW, Vec3::new(rng.random(), rng.random(), rng.random()));
+            let weight =
+                if light.z > 0.0 { f64::from(reflected(light) / moments_pdf(moments, VIEW, light)) } else { 0.0 };
             sum += weight;
             square += weight * weight;
         }

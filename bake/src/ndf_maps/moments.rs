@@ -44,7 +44,7 @@ impl Material {
             for step in [along, -along, across, -across] {
                 let mean = self.normal(local.mean + SQRT_2 * step);
                 let own = Moments { mean, covariance: Vec3::new(lobe, 0.0, lobe) };
-                sums.add(0.25 * weight * in_patches, turned_moments(own, normal));
+                sums.moments_add(0.25 * weight * in_patches, turned_moments(own, normal));
             }
         }
         if in_patches < 1.0 {
@@ -60,7 +60,7 @@ impl Material {
                 let mut terms = Terms::default();
                 self.windows(class, place, blend, weight * (1.0 - in_patches) * part / probes.total, &mut terms);
                 for term in &terms.nodes {
-                    sums.add(term.weight, turned_moments(self.maps.node_moments(term.node), normal));
+                    sums.moments_add(term.weight, turned_moments(self.maps.node_moments(term.node), normal));
                 }
                 k = next_probe(k);
             }
@@ -100,7 +100,7 @@ impl Material {
         let whole = self.maps.node_moments(node);
         for (share, entry) in shares.into_iter().zip(&self.placement.palette) {
             if share != 0.0 {
-                sums.add(share, turned_moments(whole, matrix(entry.normal_to_local)));
+                sums.moments_add(share, turned_moments(whole, matrix(entry.normal_to_local)));
             }
         }
     }
@@ -119,6 +119,6 @@ impl Material {
                 self.stochastic_moments(footprint, (cells_x, cell_texels), settings, &mut sums);
             }
         }
-        sums.whole(self.maps.params.intrinsic_roughness * self.maps.params.intrinsic_roughness)
+        sums.moments_whole(self.maps.params.intrinsic_roughness * self.maps.params.intrinsic_roughness)
     }
 }

@@ -56,7 +56,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let settings = GlintNdfSettings(q.max_ratio, q.reach);
     let sum = glint_ndf_density(material, GlintFootprint(q.mean, q.xx, q.xy, q.yy), settings, q.s);
     let moments = glint_ndf_moments(material, GlintFootprint(q.mean, q.xx, q.xy, q.yy), settings);
-    let rough = glint_moments_rough_normal(moments);
+    let rough = glint_rough_normal(moments);
     // The third number is one of the others, so that both kinds of samples are drawn.
     let light = glint_moments_sample(moments, NDF_MAPS_VIEW, vec3f(q.random_x, q.random_y, q.random_x));
     answers[id.x] = NdfMapsAnswer(

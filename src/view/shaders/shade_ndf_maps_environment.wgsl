@@ -26,7 +26,7 @@ fn shade_ndf_place(point: ViewPoint) -> GlintFootprint {
 // A layer as a smooth surface of the environment. Roughness that differs between the axes is taken as the round one of the same peak.
 fn shade_ndf_rough(point: ViewPoint, layer: u32, f0: vec3f) -> GlintSurface {
     let moments = glint_ndf_moments(shade_ndf_material(layer), shade_ndf_place(point), shade_ndf_settings());
-    let rough = glint_moments_rough_normal(moments);
+    let rough = glint_rough_normal(moments);
     let turned = max(SHADE_NDF_LEAST_COSINE - dot(rough.normal, point.view), 0.0);
     let seen = normalize(rough.normal + turned * point.view);
     let normal = scene.environment_from_world * view_to_world(point, seen);

@@ -4,7 +4,7 @@ use crate::support::{QUERIES, compare, gpu, random, real_map};
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat2, DVec2, Vec2, Vec3};
 use glint_bake_core::footprint::Footprint;
-use glint_bake_core::moments::{pdf, rough_normal, sample};
+use glint_bake_core::moments::{moments_pdf, moments_sample, rough_normal};
 use glint_bake_core::ndf_maps::bake::bake_maps;
 use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::eval::{EvalSettings, matrix};
@@ -261,7 +261,7 @@ fn the_moments_of_the_shader_are_those_of_the_cpu() {
             let moments = layers[query.layer as usize].material.moments(&query.footprint(), query.settings());
             let rough = rough_normal(moments);
             let [x, y] = query.random;
-            let light = sample(moments, VIEW, Vec3::new(x, y, x));
+            let light = moments_sample(moments, VIEW, Vec3::new(x, y, x));
             pairs.extend([
                 (answer.mean.x, moments.mean.x),
                 (answer.mean.y, moments.mean.y),
@@ -273,7 +273,7 @@ fn the_moments_of_the_shader_are_those_of_the_cpu() {
                 (answer.light.x, light.x),
                 (answer.light.z, light.z),
                 // Over that of a peak of the width of a lobe.
-                (answer.pdf * 0.02, pdf(moments, VIEW, light) * 0.02),
+                (answer.pdf * 0.02, moments_pdf(moments, VIEW, light) * 0.02),
             ]);
         }
     }
