@@ -7,6 +7,7 @@ use glint_bake_core::ndf_maps::bake::bake_maps;
 use glint_bake_core::ndf_maps::baked::{BakedNdfMaps, Material};
 use glint_bake_core::ndf_maps::eval::EvalSettings;
 use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, StochasticOptions, TransformRanges};
+use glint_bake_core::ndf_maps::pixel_errors::SweptFootprint;
 use glint_bake_core::ndf_maps::placement::place;
 use glint_bake_core::ndf_maps::quality::{footprint_errors, node_errors};
 use glint_bake_core::ndf_maps::reference_surface::SurfaceReference;
@@ -219,6 +220,31 @@ fn a_pixel_of_a_tiled_surface_is_what_its_normals_say() {
         let e1 = surface_error(&map, &options, &[(1.0, 1.0), (2.0, 1.0), (4.0, 1.0)], 4, EvalSettings::REAL_TIME);
         println!("{name}: mean E₁ of a pixel {:.1} %", 100.0 * e1);
         assert!(e1 <= 0.05, "{name}: mean E₁ of a pixel {e1}");
+    }
+}
+
+/// What the bake records of pixels is what the reference says, size by size.
+#[test]
+fn the_recorded_error_of_a_pixel_is_the_exact_one() {
+    let Some(data) = real_maps::data() else { return };
+    let tiled = PlacementOptions::Tiled(TransformRanges::default());
+    for name in TINY[..4].iter() {
+        let map = real_maps::load(&data, name, None);
+        let maps = baked(&map, 0.02, 0.03);
+        let recorded = maps.params.pixel;
+        let material = Material { placement: place(&map, 0.02, &tiled).unwrap(), maps };
+        let reference = SurfaceReference::new(&map, &material);
+        let swept = SweptFootprint::all(&map, NdfMapsOptions::default().finest_window);
+        let of_size = |swept: &[SweptFootprint]| {
+            let footprints: Vec<_> = swept.iter().map(|swept| swept.footprint).collect();
+            (swept[0].sigma_texels, footprint_errors(&reference, &footprints, EvalSettings::REAL_TIME).e1.mean)
+        };
+        let exact: Vec<(f64, f64)> = swept.chunk_by(|a, b| a.sigma_texels == b.sigma_texels).map(of_size).collect();
+        let mean = exact.iter().map(|size| size.1).sum::<f64>() / exact.len() as f64;
+        let worst = exact.iter().map(|size| size.1).fold(0.0, f64::max);
+        println!("{name}: recorded {recorded:.4?}; exact mean {mean:.4}, worst {worst:.4}, by size {exact:.4?}");
+        assert!((recorded.mean - mean).abs() <= 0.005, "{name}: mean {mean}, recorded {recorded:?}");
+        assert!((recorded.worst - worst).abs() <= 0.005, "{name}: worst {worst}, recorded {recorded:?}");
     }
 }
 

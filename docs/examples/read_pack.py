@@ -37,7 +37,8 @@ PARAMETERS = {
     "PROV": PROVENANCE,
     "NMPP": dict(
         width="u32", height="u32", intrinsic_roughness="f32", finest_variance="f32", levels=("list", LEVEL),
-        max_error="f32", measured=dict(mean="f64", p95="f64", worst="f64", energy="f64"), node_errors=("list", "f32")),
+        max_error="f32", measured=dict(mean="f64", p95="f64", worst="f64", energy="f64"),
+        pixel=dict(mean="f64", worst="f64", worst_sigma_texels="f64"), node_errors=("list", "f32")),
     "PLPP": dict(kind=("enum", ["Tiled", ("Stochastic", CELLS)]), palette_len="u32"),
     "LAYR": dict(coat="string", base="string", coat_f0="f32", base_f0=("array", 3, "f32")),
     "SDPP": dict(

@@ -76,7 +76,7 @@ fn ndf_parameters_byte_by_byte() {
         expected.extend_from_slice(&word.to_le_bytes());
     }
     expected.extend_from_slice(&0.1f32.to_le_bytes());
-    for error in [0.01f64, 0.02, 0.03, 0.001] {
+    for error in [0.01f64, 0.02, 0.03, 0.001, 0.04, 0.05, 0.75] {
         expected.extend_from_slice(&error.to_le_bytes());
     }
     expected.extend_from_slice(&3u64.to_le_bytes());

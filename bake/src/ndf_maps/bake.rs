@@ -9,6 +9,7 @@ use super::fine_grid::{FineGrid, Plan, step_length};
 use super::lobe_norm::LobeNorm;
 use super::normal_bins::{NormalBins, Parts, parts_per_texel};
 use super::options::{NdfMapsOptions, Options, WORST_OF_MEAN};
+use super::pixel_errors::{self, SweptFootprint};
 use super::placement;
 use super::table_fit::{FittedTable, fit_node};
 use super::windows::{Window, levels};
@@ -17,7 +18,7 @@ use crate::normal_map::NormalMap;
 use crate::progress::Progress;
 use crate::quality::metrics::Summary;
 use glint_formats::Wrap;
-use glint_formats::ndf_maps::{Level, MeasuredError, MomentsRecord, NdfMapsParams, NodeRecord};
+use glint_formats::ndf_maps::{Level, MeasuredError, MomentsRecord, NdfMapsParams, NodeRecord, PixelError};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -43,12 +44,15 @@ pub fn bake_maps(map: &NormalMap, options: &NdfMapsOptions, progress: &dyn Progr
     let map = &repeating(map);
     let levels = levels(map.width, map.height, options.finest_window);
     let windows = windows(map, &levels, options.finest_window * options.finest_window);
-    let nodes = Nodes::new(map, &windows, options.roughness);
+    let footprints = SweptFootprint::all(map, options.finest_window);
+    let measured_windows = footprints.iter().map(SweptFootprint::window);
+    let all: Vec<Window> = windows.iter().copied().chain(measured_windows).collect();
+    let grids = FineGrids::new(map, &all, options.roughness);
     progress.begin("NDF maps", windows.len() as u64);
     let (candidates, moments): (Vec<Vec<FittedTable>>, Vec<MomentsRecord>) = (0..windows.len())
         .into_par_iter()
         .map(|node| {
-            let grid = nodes.fine_grid(node);
+            let grid = grids.of_window(node);
             let tables = fit_node(&grid, options.max_error);
             progress.advance(1);
             let (mean, covariance) = grid.moments();
@@ -74,7 +78,7 @@ pub fn bake_maps(map: &NormalMap, options: &NdfMapsOptions, progress: &dyn Progr
         energy: fitted.iter().fold(0.0f64, |a, table| a.max(table.energy)),
     };
     let snorm = |v: f32| (v.clamp(-1.0, 1.0) * 32767.0).round() as i16;
-    Ok(BakedNdfMaps {
+    let baked = BakedNdfMaps {
         params: NdfMapsParams {
             width: map.width,
             height: map.height,
@@ -83,6 +87,7 @@ pub fn bake_maps(map: &NormalMap, options: &NdfMapsOptions, progress: &dyn Progr
             levels,
             max_error: options.max_error as f32,
             measured,
+            pixel: PixelError::default(),
             node_errors: errors.iter().map(|error| *error as f32).collect(),
         },
         nodes: fitted.iter().zip(&atlas.places).map(record).collect(),
@@ -90,20 +95,21 @@ pub fn bake_maps(map: &NormalMap, options: &NdfMapsOptions, progress: &dyn Progr
         atlas_size: atlas.size,
         atlas: atlas.texels,
         normals: map.projected.iter().map(|s| s.map(snorm)).collect(),
-    })
+    };
+    pixel_errors::measured(map, baked, &footprints, |k| grids.of_window(windows.len() + k))
 }
 
-/// What the nodes' fine grids are made of.
-struct Nodes {
+/// What fine grids under windows, of nodes and of footprints, are made of.
+struct FineGrids {
     roughness: f64,
-    /// Parts along a texel, and the plan of the fine grid, a node.
+    /// Parts along a texel, and the plan of the fine grid, a window.
     plans: Vec<(u32, Plan)>,
     /// Bins by parts along a texel and steps between their points.
     bins: BTreeMap<(u32, u32), NormalBins>,
 }
 
-impl Nodes {
-    fn new(map: &NormalMap, windows: &[Window], roughness: f64) -> Nodes {
+impl FineGrids {
+    fn new(map: &NormalMap, windows: &[Window], roughness: f64) -> FineGrids {
         let sizes: BTreeSet<u32> = windows.iter().map(parts_per_texel).collect();
         let parts: BTreeMap<u32, Parts> = sizes.into_iter().map(|n| (n, Parts::new(map, n))).collect();
         let plan = |window: &Window| {
@@ -117,11 +123,11 @@ impl Nodes {
             let spacing = f64::from(key.1) * step_length(roughness);
             (key, NormalBins::new(&parts[&key.0], spacing, roughness, &norm))
         };
-        Nodes { roughness, plans, bins: wanted.into_iter().map(bins).collect() }
+        FineGrids { roughness, plans, bins: wanted.into_iter().map(bins).collect() }
     }
 
-    fn fine_grid(&self, node: usize) -> FineGrid {
-        let (per_texel, plan) = &self.plans[node];
+    fn of_window(&self, window: usize) -> FineGrid {
+        let (per_texel, plan) = &self.plans[window];
         FineGrid::new(plan, &self.bins[&(*per_texel, plan.step)], self.roughness)
     }
 }

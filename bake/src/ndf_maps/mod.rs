@@ -19,6 +19,7 @@ pub mod moments;
 mod normal_bins;
 pub mod options;
 mod owners;
+pub mod pixel_errors;
 pub mod placement;
 pub mod quality;
 pub mod query;

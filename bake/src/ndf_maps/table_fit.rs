@@ -237,31 +237,34 @@ fn error(core: &Core<'_>, roots: &[f32], width: usize, spacing: [usize; 2], scal
     (difference + all - core.total) / all.max(f64::MIN_POSITIVE)
 }
 
-/// Sum over the cells between two rows of a function's mean absolute value, from its values at corners.
+/// Mean absolute value of a function over a cell of the fine grid, from its values at corners.
 ///
 /// Points of the fine grid lie on texels and midway between them, where differences are largest. The mean over them of |d| would be that
 /// of a wave's extremes, where the wave's own is 2/π of it. So corners of one sign count fully and those that cancel by 2/π; in between by the
 /// square of the part that does not cancel. Inlined, so that it has the vectors of its caller.
 #[inline(always)]
-fn cells(above: &[f32], below: &[f32]) -> f32 {
-    const LANES: usize = 8;
+pub(super) fn mean_size(corners: [f32; 4]) -> f32 {
     /// A quarter, for four corners, of 2/π.
     const WAVE: f32 = 0.5 * std::f32::consts::FRAC_1_PI;
-    let cell = |corners: [f32; 4]| {
-        let sum = corners[0] + corners[1] + corners[2] + corners[3];
-        let size = corners[0].abs() + corners[1].abs() + corners[2].abs() + corners[3].abs();
-        WAVE * size + (0.25 - WAVE) * sum * sum / size.max(f32::MIN_POSITIVE)
-    };
+    let sum = corners[0] + corners[1] + corners[2] + corners[3];
+    let size = corners[0].abs() + corners[1].abs() + corners[2].abs() + corners[3].abs();
+    WAVE * size + (0.25 - WAVE) * sum * sum / size.max(f32::MIN_POSITIVE)
+}
+
+/// Sum over the cells between two rows of a function's mean absolute value. Inlined as [`mean_size`].
+#[inline(always)]
+fn cells(above: &[f32], below: &[f32]) -> f32 {
+    const LANES: usize = 8;
     let count = above.len() - 1;
     let mut sums = [0.0f32; LANES];
     let mut at = 0;
     while at + LANES <= count {
         let [a, b] = [above, below].map(|row| &row[at..at + LANES + 1]);
         for k in 0..LANES {
-            sums[k] += cell([a[k], a[k + 1], b[k], b[k + 1]]);
+            sums[k] += mean_size([a[k], a[k + 1], b[k], b[k + 1]]);
         }
         at += LANES;
     }
-    let rest: f32 = (at..count).map(|k| cell([above[k], above[k + 1], below[k], below[k + 1]])).sum();
+    let rest: f32 = (at..count).map(|k| mean_size([above[k], above[k + 1], below[k], below[k + 1]])).sum();
     sums.iter().sum::<f32>() + rest
 }

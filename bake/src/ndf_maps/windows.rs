@@ -73,6 +73,11 @@ impl Window {
         }
     }
 
+    /// That of a round Gaussian anywhere.
+    pub(super) fn round(centre: DVec2, variance: f64) -> Window {
+        Window { centre, inverse: DVec2::splat(variance.recip()), reach: DVec2::splat(REACH * variance.sqrt()) }
+    }
+
     /// Weights below this are those beyond the reach.
     pub(super) const LEAST: f64 = 3.354_626_279_025_119e-4;
 

@@ -137,12 +137,17 @@ fn check_parameters(params: &NdfMapsParams) -> Result<(), String> {
     if !(params.finest_variance > 0.0 && params.finest_variance.is_finite()) {
         return Err(format!("expected a positive variance of the finest windows, found {}", params.finest_variance));
     }
-    let measured = &params.measured;
+    let (measured, pixel) = (&params.measured, &params.pixel);
     let is_error = |error: f64| error >= 0.0 && error.is_finite();
-    for error in [f64::from(params.max_error), measured.mean, measured.p95, measured.worst, measured.energy] {
+    let of_nodes = [f64::from(params.max_error), measured.mean, measured.p95, measured.worst, measured.energy];
+    for error in of_nodes.into_iter().chain([pixel.mean, pixel.worst]) {
         if !is_error(error) {
             return Err(format!("expected errors that are finite and not negative, found {error}"));
         }
+    }
+    let sigma = pixel.worst_sigma_texels;
+    if !(sigma > 0.0 && sigma.is_finite()) {
+        return Err(format!("expected a positive standard deviation of the pixels that are worst, found {sigma}"));
     }
     match params.node_errors.iter().enumerate().find(|&(_, error)| !is_error(f64::from(*error))) {
         Some((i, error)) => Err(format!("node {i}: expected an error that is finite and not negative, found {error}")),

@@ -215,6 +215,18 @@ pub struct MeasuredError {
     pub energy: f64,
 }
 
+/// Error of a pixel as a shader reads it, E₁ against the exact NDF of round footprints on copies of the example side by side: means over
+/// places of one size.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PixelError {
+    /// Mean over sizes.
+    pub mean: f64,
+    /// Worst size.
+    pub worst: f64,
+    /// Standard deviation of the footprints of that size in texels.
+    pub worst_sigma_texels: f64,
+}
+
 /// Parameters of one example's NDF maps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NdfMapsParams {
@@ -233,6 +245,8 @@ pub struct NdfMapsParams {
     pub max_error: f32,
     /// Error of nodes as the bake measured it.
     pub measured: MeasuredError,
+    /// Error of pixels as the bake measured it.
+    pub pixel: PixelError,
     /// E₁ of each node as the bake measured it.
     pub node_errors: Vec<f32>,
 }

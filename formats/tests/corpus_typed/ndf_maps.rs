@@ -76,6 +76,8 @@ fn parameter_cases() -> Vec<Case> {
         parameters(|params| params.finest_variance = f32::INFINITY),
         parameters(|params| params.measured.worst = f64::NAN),
         parameters(|params| params.node_errors[2] = -0.5),
+        parameters(|params| params.pixel.mean = -0.25),
+        parameters(|params| params.pixel.worst_sigma_texels = 0.0),
         parameters(|params| params.intrinsic_roughness = 0.0),
     ]
 }

@@ -17,6 +17,7 @@ pub fn ndf_params() -> NdfMapsParams {
         levels: vec![Level { nodes_x: 2, nodes_y: 1, first_node: 0 }, Level { nodes_x: 1, nodes_y: 1, first_node: 2 }],
         max_error: 0.1,
         measured: MeasuredError { mean: 0.01, p95: 0.02, worst: 0.03, energy: 0.001 },
+        pixel: PixelError { mean: 0.04, worst: 0.05, worst_sigma_texels: 0.75 },
         node_errors: vec![0.01, 0.02, 0.03],
     }
 }

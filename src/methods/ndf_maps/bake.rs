@@ -2,6 +2,7 @@
 //! names, options, inputs, output paths.
 
 use super::args::Args;
+use super::info::pixel_text;
 use crate::cli::Terminal;
 use crate::cli::normal_maps::{Names, check_name};
 use crate::exit::{Exit, Failure};
@@ -26,6 +27,9 @@ use glint_formats::ndf_maps::{LayeredMaterial, Level};
 use glint_formats::provenance::Provenance;
 use std::path::PathBuf;
 
+/// Mean errors of pixels above this are said.
+const PIXEL_WARNING: f64 = 0.05;
+
 /// A bake that is only looked at: maps and materials, and the bytes that the pack would have.
 pub fn draft(args: &Args) -> Result<(Vec<(NormalMap, Material)>, u64), Failure> {
     let job = Job::unwritten(args)?;
@@ -47,7 +51,18 @@ pub fn bake(args: &Args, terminal: Terminal) -> Result<Option<FinishedPack>, Fai
         terminal.say(&dry_run_text(&job));
         return Ok(None);
     }
-    let (_, bytes) = job.bake(&Stages::new(terminal))?;
+    let (materials, bytes) = job.bake(&Stages::new(terminal))?;
+    for (source, baked) in job.sources.iter().zip(&materials) {
+        let pixel = &baked.material.maps.params.pixel;
+        if pixel.mean > PIXEL_WARNING {
+            terminal.warn(&format!(
+                "{}: expected E1 of a pixel of at most {} on average, found {}; give a smaller --max-error or a larger --roughness",
+                source.path.display(),
+                percent(PIXEL_WARNING),
+                pixel_text(pixel)
+            ));
+        }
+    }
     Ok(Some(FinishedPack { bytes, smaller: "--max-error" }))
 }
 

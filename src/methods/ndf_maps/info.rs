@@ -5,7 +5,8 @@ use crate::quantities::{kib, percent};
 use glint_bake_core::ndf_maps::baked::Material;
 use glint_bake_core::ndf_maps::sections;
 use glint_formats::ndf_maps::{
-    CLASSES, DENSITY, LAYERS, LayeredMaterial, Level, MeasuredError, NODES, NOISE, NORMALS, PlacementKind, UNIFORM,
+    CLASSES, DENSITY, LAYERS, LayeredMaterial, Level, MeasuredError, NODES, NOISE, NORMALS, PixelError, PlacementKind,
+    UNIFORM,
 };
 use glint_formats::{FourCc, Pack};
 use serde::Serialize;
@@ -32,6 +33,8 @@ pub struct MaterialInfo {
     pub max_error: f32,
     /// Error as the bake measured it.
     pub measured: MeasuredError,
+    /// Error of pixels as the bake measured it.
+    pub pixel: PixelError,
     /// How a surface is covered.
     pub placement: PlacementInfo,
 }
@@ -104,6 +107,7 @@ impl MaterialInfo {
             bytes,
             max_error: params.max_error,
             measured: params.measured,
+            pixel: params.pixel,
             placement: match material.placement.params.kind {
                 PlacementKind::Tiled => PlacementInfo::Tiled,
                 PlacementKind::Stochastic { cells_x, cells_y, cell_texels, seed } => PlacementInfo::Stochastic {
@@ -154,7 +158,7 @@ impl Item for MaterialInfo {
     }
 
     fn accuracy_line(&self) -> Option<String> {
-        Some(self.size_and_error())
+        Some(format!("{}; a pixel {}", self.size_and_error(), pixel_text(&self.pixel)))
     }
 
     fn to_text(&self) -> String {
@@ -178,6 +182,7 @@ impl Item for MaterialInfo {
             ));
         }
         line(format!("  accuracy     {}", self.size_and_error()));
+        line(format!("  a pixel      E₁ {}", pixel_text(&self.pixel)));
         line(format!("  energy       {:.1e} at most from 1", self.measured.energy));
         line(format!(
             "  bytes        nodes {}, density {}, normals {}, placement {}",
@@ -191,6 +196,12 @@ impl Item for MaterialInfo {
         });
         out
     }
+}
+
+/// Error of pixels of the example side by side.
+pub fn pixel_text(pixel: &PixelError) -> String {
+    let PixelError { mean, worst, worst_sigma_texels } = *pixel;
+    format!("mean {}, worst {} at footprints of {worst_sigma_texels:.2} texels", percent(mean), percent(worst))
 }
 
 /// A two-layer material.
