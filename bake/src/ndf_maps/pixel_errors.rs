@@ -7,7 +7,7 @@
 use super::baked::{BakedNdfMaps, Material};
 use super::eval::EvalSettings;
 use super::fine_grid::FineGrid;
-use super::options::{PlacementOptions, TransformRanges};
+use super::options::{PlacementOptions, ROUGHNESS_RANGE, TransformRanges};
 use super::placement::place;
 use super::table_fit::mean_size;
 use super::windows::Window;
@@ -69,7 +69,9 @@ pub(super) fn measured(
     exact: impl Fn(usize) -> FineGrid + Sync,
 ) -> Result<BakedNdfMaps> {
     let side_by_side = PlacementOptions::Tiled(TransformRanges::default());
-    let placement = place(map, f64::from(maps.params.intrinsic_roughness), &side_by_side)?;
+    // The pack's f32 of the smallest roughness is a little smaller.
+    let roughness = f64::from(maps.params.intrinsic_roughness).max(ROUGHNESS_RANGE.0);
+    let placement = place(map, roughness, &side_by_side)?;
     let mut material = Material { maps, placement };
     let error = |(k, swept): (usize, &SweptFootprint)| pixel_error(&material, &swept.footprint, &exact(k));
     let errors: Vec<f64> = footprints.par_iter().enumerate().map(error).collect();
