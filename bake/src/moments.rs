@@ -95,8 +95,8 @@ pub fn rough_normal(moments: Moments) -> RoughNormal {
     }
 }
 
-/// A direction that light may come from, for a random number from 0 to 1 in each of three dimensions; its density is [`moments_pdf`]. A length of
-/// 0 means that this sample has none: its half vector lies outside the disk or turns away.
+/// A direction that light may come from, for a random number from 0 to 1 in each of three dimensions; its density is [`moments_pdf`]. A
+/// length of 0 means that this sample has none: its half vector lies outside the disk or turns away.
 pub fn moments_sample(moments: Moments, view: Vec3, random: Vec3) -> Vec3 {
     let (sin, cos) = (TAU * random.y).sin_cos();
     let s = if random.z < EVEN {
@@ -118,8 +118,8 @@ pub fn moments_sample(moments: Moments, view: Vec3, random: Vec3) -> Vec3 {
     if cosine > 0.0 && light.z > 0.0 { light } else { Vec3::ZERO }
 }
 
-/// Density over solid angle of [`moments_sample`] at the unit direction `light`, given a unit direction `view`: a Gaussian and an even part over
-/// projected half vectors s, ds = cos θ_h dω_h and dω_h = dω / (4 v·h). Its integral is below 1 by the samples without a direction.
+/// Density over solid angle of [`moments_sample`] at the unit direction `light`, given a unit direction `view`: a Gaussian and an even
+/// part over projected half vectors s, ds = cos θ_h dω_h and dω_h = dω / (4 v·h). Its integral is below 1 by the samples without a direction.
 pub fn moments_pdf(moments: Moments, view: Vec3, light: Vec3) -> f32 {
     let half = half_vector(view, light);
     if light.z <= 0.0 || half.z <= 0.0 {

@@ -40,6 +40,20 @@ fn options() -> LobesOptions {
     LobesOptions { footprints: 0, normals: NormalsChoice::Snorm16, ..LobesOptions::default() }
 }
 
+/// Part of a round footprint that the lobes of the last level show, every place alike, in pictures of a map of 64 × 64 texels.
+#[test]
+fn the_whole_map_stands_for_footprints_that_see_all_of_it() {
+    let baked = bake(&waves(64), &options(), &Silent).unwrap();
+    let whole = |sigma: f64| {
+        let footprint = Footprint::new(DVec2::splat(20.0), sigma, 1.0, 0.0);
+        let Lod { finer, coarser, fraction } = baked.lod(&frame(&footprint), &QuerySettings::realtime());
+        let part = |detail: Detail, weight: f32| if detail == Detail::Whole { weight } else { 0.0 };
+        part(finer, 1.0 - fraction) + part(coarser, fraction)
+    };
+    assert_eq!(whole(6.4), 0.0);
+    assert_eq!(whole(64.0), 1.0);
+}
+
 #[test]
 fn boxes_are_the_brute_force_sum() {
     let map = waves(32);

@@ -31,7 +31,7 @@ pub const NORMALS: FourCc = FourCc(*b"NMNO");
 pub const PLACEMENT: FourCc = FourCc(*b"PLPP");
 /// Owners of a stochastic placement: texture R32G32B32A32_UINT, one texel a sub-region, see [`NoiseTexel`].
 pub const NOISE: FourCc = FourCc(*b"PLNO");
-/// Share of each palette entry in each block of cells: texture R8G8B8A8_UNORM, layers = palette / 4, full mip chain.
+/// Shares of the palette's entries under Gaussian windows around sub-regions: texture R32G32B32A32_UINT, a byte an entry, full mip chain.
 pub const CLASSES: FourCc = FourCc(*b"PLCL");
 /// Two-layer material: [`LayeredMaterial`], bincode.
 pub const LAYERS: FourCc = FourCc(*b"LAYR");
