@@ -1,4 +1,5 @@
-//! What a cell, and the mean over cells, converges to: Beckmann and GGX, round and 100:1, and the white furnace.
+//! What a cell, and the mean over cells, converges to: Beckmann and GGX, round and 100:1, and the white furnace. What a pixel shows
+//! against the mean of its parts.
 
 use glam::{DVec2, Vec2, Vec3};
 use glint_bake_core::brdf::{masking, normal_to_slope, sdf_to_ndf};
@@ -208,6 +209,61 @@ fn weak_white_furnace() {
             }
             println!("{name} α {alpha}: worst furnace error at θ = 0, π/4, 1.56: {worst:.5?}");
             assert!(worst.iter().all(|w| *w <= 0.003), "{name} α {alpha}: {worst:.5?}");
+        }
+    }
+}
+
+/// Mean, and root mean square distance from the smooth target, of what 4 000 pixels show and of the means of their sixteen parts,
+/// relative to the target: [[mean, contrast] of pixels, the same of parts].
+fn pixels_and_parts(tables: &Tables, m: &DictionaryMaterial, stretch: f32) -> [[f64; 2]; 2] {
+    let mut sums = [[0.0; 2]; 2];
+    let (mut mass, mut power) = (0.0, 0.0);
+    for k in 0..4000 {
+        let random = |step: f64| ((f64::from(k) + 0.5) * step).fract() as f32;
+        // All phases between two levels of detail; slopes all over the disc that holds most of the target.
+        let size = (random(0.618_033_988_7) - 10.0).exp2();
+        let axis = Vec2::from_angle(random(0.569_840_291) * std::f32::consts::TAU);
+        let (d_dx, d_dy) = (axis * size * stretch, axis.perp() * size);
+        let position = Vec2::new(random(0.754_877_666_2), random(0.324_717_957_2)) * 10.0;
+        let slope =
+            Vec2::from_angle(random(0.220_744_084_6) * std::f32::consts::TAU) * random(0.430_159_709).sqrt() * m.alpha;
+        let at = |position, scale| {
+            let pixel = PixelOnSurface { position, d_dx: d_dx * scale, d_dy: d_dy * scale };
+            f64::from(patch_sdf(tables, m, pixel, slope).sdf.x)
+        };
+        let mut parts = 0.0;
+        for part in 0..16 {
+            let (x, y) = ((part % 4) as f32 * 0.25 - 0.375, (part / 4) as f32 * 0.25 - 0.375);
+            parts += at(position + d_dx * x + d_dy * y, 0.25) / 16.0;
+        }
+        let target = smooth_density(false, m.alpha.as_dvec2(), slope.as_dvec2());
+        mass += target;
+        power += target * target;
+        for (sum, value) in sums.iter_mut().zip([at(position, 1.0), parts]) {
+            sum[0] += value;
+            sum[1] += (value - target).powi(2);
+        }
+    }
+    sums.map(|[mean, square]: [f64; 2]| [mean / mass, (square / power).sqrt()])
+}
+
+#[test]
+fn a_pixel_has_the_mean_and_the_contrast_of_its_parts() {
+    let tables = bake(&DictionaryOptions::default(), &Silent).unwrap().tables();
+    for stretch in [1.0, 2.0, 4.0] {
+        for density in [1e7, 1e8, 1e10] {
+            let m = material(TARGET_BECKMANN, Vec2::splat(0.3), density);
+            let [[mean, contrast], [parts_mean, parts_contrast]] = pixels_and_parts(&tables, &m, stretch);
+            let ratio = contrast / parts_contrast;
+            println!(
+                "{stretch}:1, density {density:.0e}: mean {mean:.3}, of parts {parts_mean:.3}; contrast {contrast:.3}, \
+                 of parts {parts_contrast:.3}, ratio {ratio:.2}"
+            );
+            // Three standard deviations of the mean of as many independent pixels.
+            assert!((mean - 1.0).abs() < 3.0 * contrast / 4000f64.sqrt(), "mean {mean:.3}");
+            assert!((parts_mean - 1.0).abs() < 3.0 * parts_contrast / 4000f64.sqrt(), "mean of parts {parts_mean:.3}");
+            // Cells of a pixel's edge blur it more than those of its parts, and their contrast is more than that of finer cells together.
+            assert!((0.75..1.35).contains(&ratio), "contrast {ratio:.2} times that of parts");
         }
     }
 }

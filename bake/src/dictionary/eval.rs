@@ -16,11 +16,15 @@
 //! - Density randomisation takes its normal number from two uniform ones, so its tails are bounded.
 //! - The weight of a cell is (1 − r²)² inside the footprint's ellipse, within 0.04 of (exp(−2 r²) − exp(−2)) / (1 − exp(−2));
 //!   the paper has exp(−2 r²) inside r = 1. A cell enters and leaves with weight zero, and slowly.
-//! - At each level the footprint is widened by a Gaussian of 0.4 cells (Heckbert's reconstruction filter). Every
-//!   footprint, of zero area too, then covers a cell centre, and magnified cells blend.
+//! - Cells of the finer level are one to two pixels wide; the paper's are half of that. Half as many lie under a footprint.
+//! - The weight has the variance of a square pixel where cells are small, and is never narrower than a Gaussian of 0.39 cells
+//!   (Heckbert's reconstruction filter). Every footprint, of zero area too, then covers a cell centre, and magnified cells
+//!   blend. The two widths pass into each other by the fourth powers' sum, not by the squares': what cells blur by
+//!   themselves the pixel need not blur again.
 //! - Rows of cells and the span of each row come from the ellipse, so each cell inside is visited once and none outside.
 //!   The authors walk the bounding box and stop after 100 cells, which loses weight. The number of cells is bounded by
-//!   the clamped anisotropy alone, see [`super::quality::max_cells`].
+//!   the clamped anisotropy alone, see [`super::quality::max_cells`]. Rows and columns are one loop, not two: pixels that run
+//!   side by side then wait for the one with most cells, not in each row for its longest.
 //!
 //! Lengths are in cells of level 0; one surface unit has 2^(levels − 1) of them a side.
 
@@ -39,12 +43,14 @@ const DRAW_COVERAGE: u32 = 0;
 const DRAW_DENSITY_RADIUS: u32 = 1;
 const DRAW_DENSITY_ANGLE: u32 = 2;
 const DRAW_COLOUR: u32 = 3;
-/// Coarsest level of the cell hierarchy. A minor radius beyond 2^`MAX_CELL_LEVEL` cells counts as that long.
+/// Coarsest level of the cell hierarchy. Pixels wider than half a cell of that level count as that wide.
 pub const MAX_CELL_LEVEL: u32 = 24;
 /// Largest ratio of the axes that can be asked for.
 pub const MAX_ANISOTROPY: f32 = 16.0;
-/// Squared radius, in cells, that the reconstruction filter adds: (2 · 0.4)².
-pub const RECONSTRUCTION_RADIUS2: f32 = 0.64;
+/// Squared radius, in pixels, of the footprint: the weight's variance along an axis is an eighth of it, a square pixel's 1/12.
+pub const PIXEL_RADIUS2: f32 = 2.0 / 3.0;
+/// Least squared radius in cells: beyond ½, so that a centre lies within wherever the footprint is.
+pub const RECONSTRUCTION_RADIUS2: f32 = 0.6;
 
 /// What a material asks for.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,16 +97,16 @@ pub struct SlopeSum {
     pub cells: u32,
 }
 
-/// Pixel footprint on the surface: symmetric matrix of squared radii, and its level of detail.
+/// Pixel footprint on the surface: an ellipse, and its level of detail.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelFootprint {
-    /// Entry xx of the matrix of squared radii, cells².
-    pub xx: f32,
-    /// Entry xy of that matrix, cells².
-    pub xy: f32,
-    /// Entry yy of that matrix, cells².
-    pub yy: f32,
-    /// Level at which the minor radius is one cell, in 0 to [`MAX_CELL_LEVEL`].
+    /// Squared radius along the major axis, cells².
+    pub major2: f32,
+    /// Squared radius along the minor axis, cells².
+    pub minor2: f32,
+    /// Cosine and sine of twice the major axis's angle; zero if there is none.
+    pub direction: Vec2,
+    /// Level at which a pixel is half a cell wide, in 0 to [`MAX_CELL_LEVEL`].
     pub lod: f32,
 }
 
@@ -111,14 +117,31 @@ pub struct LevelWindow {
     pub base: IVec2,
     /// Centre of the footprint from the corner of the base cell, 0 to 1.
     pub centre: Vec2,
-    /// Squared radius along y in cells².
-    pub yy: f32,
-    /// Inverse of the matrix of squared radii: (xx, xy, yy).
-    pub inverse: Vec3,
+    /// Columns by which the middle of a row moves with each row.
+    pub shear: f32,
+    /// Inverse of the squared radius along y, 1/cells².
+    pub inverse_yy: f32,
+    /// Squared half length of the row through the centre, cells².
+    pub half2: f32,
+    /// Inverse of that, 1/cells².
+    pub inverse_half2: f32,
     /// First row that may hold a cell centre, relative to the base cell.
     pub first_row: i32,
     /// Last such row.
     pub last_row: i32,
+}
+
+/// The part of a row that lies in the footprint's ellipse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowSpan {
+    /// Column, relative to the base cell, whose centre would be the middle of the row.
+    pub middle: f32,
+    /// 1 − r² in the middle, r the elliptic radius; 0 if the row is outside.
+    pub rim: f32,
+    /// First column whose centre lies in the ellipse, relative to the base cell.
+    pub first: i32,
+    /// Last such column; none if it is below the first.
+    pub last: i32,
 }
 
 /// A slope as all cells see it: what of a look-up does not depend on the cell.
@@ -154,7 +177,7 @@ pub struct PatchBrdf {
     pub cells: u32,
 }
 
-/// Footprint of the derivatives of the surface position along the two screen axes, in cells a pixel. The minor radius
+/// Footprint of the derivatives of the surface position along the two screen axes, in cells of level 0 a pixel. The minor radius
 /// grows until the axes are at most `max_anisotropy` (1 to [`MAX_ANISOTROPY`]) apart, so the pixel is blurred rather
 /// than cut.
 pub fn pixel_footprint(d_dx: Vec2, d_dy: Vec2, max_anisotropy: f32) -> PixelFootprint {
@@ -173,7 +196,7 @@ pub fn pixel_footprint(d_dx: Vec2, d_dy: Vec2, max_anisotropy: f32) -> PixelFoot
     let ratio = max_anisotropy.clamp(1.0, MAX_ANISOTROPY);
     minor2 = minor2.max(major2 / (ratio * ratio)).min(major2);
 
-    let coarsest = (MAX_CELL_LEVEL as f32).exp2();
+    let coarsest = ((MAX_CELL_LEVEL - 1) as f32).exp2();
     let shrink = (coarsest * coarsest / minor2.max(1.0e-30)).min(1.0);
     major2 *= shrink;
     minor2 *= shrink;
@@ -181,14 +204,17 @@ pub fn pixel_footprint(d_dx: Vec2, d_dy: Vec2, max_anisotropy: f32) -> PixelFoot
     if half_gap > 0.0 {
         direction = Vec2::new(half_difference / half_gap, b / half_gap);
     }
-    let mean = 0.5 * (major2 + minor2);
-    let spread = 0.5 * (major2 - minor2);
     PixelFootprint {
-        xx: mean + spread * direction.x,
-        xy: spread * direction.y,
-        yy: mean - spread * direction.x,
-        lod: 0.5 * minor2.max(1.0).log2(),
+        major2: PIXEL_RADIUS2 * major2,
+        minor2: PIXEL_RADIUS2 * minor2,
+        direction,
+        lod: 0.5 * (4.0 * minor2).max(1.0).log2(),
     }
+}
+
+/// Squared radius of the weight in cells², of a footprint whose squared radius is `radius2`.
+pub fn widened(radius2: f32) -> f32 {
+    (radius2 * radius2 + RECONSTRUCTION_RADIUS2 * RECONSTRUCTION_RADIUS2).sqrt()
 }
 
 /// The footprint around `position` (in cells of level 0) at a whole level.
@@ -198,37 +224,42 @@ pub fn level_window(footprint: PixelFootprint, position: Vec2, level: u32) -> Le
     let p = Vec2::new((position.x * scale).clamp(-limit, limit), (position.y * scale).clamp(-limit, limit));
     let base = Vec2::new(p.x.floor(), p.y.floor());
     let centre = Vec2::new(p.x - base.x, p.y - base.y);
-    let scale2 = scale * scale;
-    let xx = footprint.xx * scale2 + RECONSTRUCTION_RADIUS2;
-    let xy = footprint.xy * scale2;
-    let yy = footprint.yy * scale2 + RECONSTRUCTION_RADIUS2;
+    let major2 = widened(footprint.major2 * scale * scale);
+    let minor2 = widened(footprint.minor2 * scale * scale);
+    let mean = 0.5 * (major2 + minor2);
+    let spread = 0.5 * (major2 - minor2);
+    let xx = mean + spread * footprint.direction.x;
+    let xy = spread * footprint.direction.y;
+    let yy = mean - spread * footprint.direction.x;
     let reach = yy.sqrt();
-    let det = (xx * yy - xy * xy).max(RECONSTRUCTION_RADIUS2 * RECONSTRUCTION_RADIUS2);
+    let inverse_yy = 1.0 / yy;
+    let shear = xy * inverse_yy;
+    let half2 = (xx - xy * shear).max(RECONSTRUCTION_RADIUS2);
     LevelWindow {
         base: base.as_ivec2(),
         centre,
-        yy,
-        inverse: Vec3::new(yy, -xy, xx) / det,
+        shear,
+        inverse_yy,
+        half2,
+        inverse_half2: 1.0 / half2,
         first_row: (centre.y - reach - 0.5).ceil() as i32,
         last_row: (centre.y + reach - 0.5).floor() as i32,
     }
 }
 
-/// First and last column, relative to the base cell, whose centres lie in the ellipse in `row`; the span is empty if
-/// the first is larger.
-pub fn row_span(window: LevelWindow, row: i32) -> IVec2 {
+/// The columns of `row`, counted from the base cell, whose centres lie in the ellipse.
+pub fn row_span(window: LevelWindow, row: i32) -> RowSpan {
     let dy = row as f32 + 0.5 - window.centre.y;
-    let mid = window.centre.x - window.inverse.y / window.inverse.x * dy;
-    let half = ((1.0 - dy * dy / window.yy).max(0.0) / window.inverse.x).sqrt();
-    IVec2::new((mid - half - 0.5).ceil() as i32, (mid + half - 0.5).floor() as i32)
+    let middle = window.centre.x - 0.5 + window.shear * dy;
+    let rim = (1.0 - dy * dy * window.inverse_yy).max(0.0);
+    let half = (rim * window.half2).sqrt();
+    RowSpan { middle, rim, first: (middle - half).ceil() as i32, last: (middle + half).floor() as i32 }
 }
 
-/// Weight, not yet normalised, of a cell by its place relative to the base cell. Zero at the rim and beyond.
-pub fn cell_weight(window: LevelWindow, column: i32, row: i32) -> f32 {
-    let dx = column as f32 + 0.5 - window.centre.x;
-    let dy = row as f32 + 0.5 - window.centre.y;
-    let r2 = window.inverse.x * dx * dx + 2.0 * window.inverse.y * dx * dy + window.inverse.z * dy * dy;
-    let inside = (1.0 - r2).max(0.0);
+/// Weight, not yet normalised, of a cell of a row by its column, counted from the base cell. Zero at the rim and beyond.
+pub fn cell_weight(window: LevelWindow, span: RowSpan, column: i32) -> f32 {
+    let dx = column as f32 - span.middle;
+    let inside = (span.rim - dx * dx * window.inverse_half2).max(0.0);
     inside * inside
 }
 
@@ -369,12 +400,25 @@ pub fn level_sdf(
     let mut coverage = 0.0;
     let mut total = 0.0;
     let mut cells = 0;
-    for row in window.first_row..=window.last_row {
-        let span = row_span(window, row);
-        let y = (window.base.y.wrapping_add(row) as u32) << level;
-        let key = row_key(y, material.seed);
-        for column in span.x..=span.y {
-            let weight = cell_weight(window, column, row);
+    let mut row = window.first_row - 1;
+    let mut span = RowSpan { middle: 0.0, rim: 0.0, first: 0, last: -1 };
+    let mut column = 0;
+    let mut y = 0;
+    let mut key = 0;
+    loop {
+        if column > span.last {
+            row += 1;
+            if row > window.last_row {
+                break;
+            }
+            span = row_span(window, row);
+            column = span.first;
+            y = (window.base.y.wrapping_add(row) as u32) << level;
+            key = row_key(y, material.seed);
+        }
+        // A row near the rim may hold no centre.
+        if column <= span.last {
+            let weight = cell_weight(window, span, column);
             let x = (window.base.x.wrapping_add(column) as u32) << level;
             let state = cell_state_in_row(x, y, key, material.seed);
             let cell = cell_sdf(tables, material, state, count_level, query);
@@ -382,6 +426,7 @@ pub fn level_sdf(
             coverage += cell.covered * weight;
             total += weight;
             cells += 1;
+            column += 1;
         }
     }
     SlopeSum { sdf: sdf / total, coverage: coverage / total, cells }

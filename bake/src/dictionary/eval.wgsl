@@ -16,8 +16,10 @@ const GLINT_TARGET_GGX: u32 = 1u;
 // Coarsest level of the cell hierarchy.
 const GLINT_MAX_CELL_LEVEL: u32 = 24u;
 const GLINT_MAX_ANISOTROPY: f32 = 16.0;
-// Squared radius, in cells, that the reconstruction filter adds.
-const GLINT_RECONSTRUCTION_RADIUS2: f32 = 0.64;
+// Squared radius, in pixels, of the footprint: its weight has a square pixel's variance.
+const GLINT_PIXEL_RADIUS2: f32 = 0.6666667;
+// Least squared radius in cells.
+const GLINT_RECONSTRUCTION_RADIUS2: f32 = 0.6;
 const GLINT_PI: f32 = 3.14159265;
 
 const GLINT_DRAW_COVERAGE: u32 = 0u;
@@ -80,11 +82,13 @@ struct GlintSlopeSum {
     cells: u32,
 }
 
-// Squared radii of the footprint in cells^2, and the level at which its minor radius is one cell.
+// An ellipse, its squared radii in cells^2.
 struct GlintPixelFootprint {
-    xx: f32,
-    xy: f32,
-    yy: f32,
+    major2: f32,
+    minor2: f32,
+    // Cosine and sine of twice the major axis's angle; zero if there is none.
+    direction: vec2f,
+    // Level at which a pixel is half a cell wide.
     lod: f32,
 }
 
@@ -92,12 +96,27 @@ struct GlintPixelFootprint {
 struct GlintLevelWindow {
     base: vec2i,
     centre: vec2f,
-    // Squared radius along y.
-    yy: f32,
-    // Inverse of the matrix of squared radii: (xx, xy, yy).
-    inverse: vec3f,
+    // Columns by which the middle of a row moves with each row.
+    shear: f32,
+    // Inverse of the squared radius along y.
+    inverse_yy: f32,
+    // Squared half length of the row through the centre.
+    half2: f32,
+    // Inverse of that.
+    inverse_half2: f32,
     first_row: i32,
     last_row: i32,
+}
+
+// The part of a row that lies in the footprint's ellipse. Columns are relative to the base cell.
+struct GlintRowSpan {
+    // Column whose centre would be the middle of the row.
+    middle: f32,
+    // 1 - r^2 in the middle, r the elliptic radius; 0 if the row is outside.
+    rim: f32,
+    // First and last column whose centres lie in the ellipse; none if the last is below the first.
+    first: i32,
+    last: i32,
 }
 
 // A slope as all cells see it.
@@ -146,7 +165,7 @@ fn glint_pixel_footprint(d_dx: vec2f, d_dy: vec2f, max_anisotropy: f32) -> Glint
     let ratio = clamp(max_anisotropy, 1.0, GLINT_MAX_ANISOTROPY);
     minor2 = min(max(minor2, major2 / (ratio * ratio)), major2);
 
-    let coarsest = exp2(f32(GLINT_MAX_CELL_LEVEL));
+    let coarsest = exp2(f32(GLINT_MAX_CELL_LEVEL - 1u));
     let shrink = min(coarsest * coarsest / max(minor2, 1.0e-30), 1.0);
     major2 *= shrink;
     minor2 *= shrink;
@@ -154,14 +173,17 @@ fn glint_pixel_footprint(d_dx: vec2f, d_dy: vec2f, max_anisotropy: f32) -> Glint
     if half_gap > 0.0 {
         direction = vec2f(half_difference / half_gap, b / half_gap);
     }
-    let mean = 0.5 * (major2 + minor2);
-    let spread = 0.5 * (major2 - minor2);
     return GlintPixelFootprint(
-        mean + spread * direction.x,
-        spread * direction.y,
-        mean - spread * direction.x,
-        0.5 * log2(max(minor2, 1.0)),
+        GLINT_PIXEL_RADIUS2 * major2,
+        GLINT_PIXEL_RADIUS2 * minor2,
+        direction,
+        0.5 * log2(max(4.0 * minor2, 1.0)),
     );
+}
+
+// Squared radius of the weight in cells^2, of a footprint whose squared radius is `radius2`.
+fn glint_widened(radius2: f32) -> f32 {
+    return sqrt(radius2 * radius2 + GLINT_RECONSTRUCTION_RADIUS2 * GLINT_RECONSTRUCTION_RADIUS2);
 }
 
 // The footprint around `position` (in cells of level 0) at a whole level.
@@ -171,36 +193,42 @@ fn glint_level_window(footprint: GlintPixelFootprint, position: vec2f, level: u3
     let p = clamp(position * scale, -limit, limit);
     let base = floor(p);
     let centre = p - base;
-    let scale2 = scale * scale;
-    let xx = footprint.xx * scale2 + GLINT_RECONSTRUCTION_RADIUS2;
-    let xy = footprint.xy * scale2;
-    let yy = footprint.yy * scale2 + GLINT_RECONSTRUCTION_RADIUS2;
+    let major2 = glint_widened(footprint.major2 * scale * scale);
+    let minor2 = glint_widened(footprint.minor2 * scale * scale);
+    let mean = 0.5 * (major2 + minor2);
+    let spread = 0.5 * (major2 - minor2);
+    let xx = mean + spread * footprint.direction.x;
+    let xy = spread * footprint.direction.y;
+    let yy = mean - spread * footprint.direction.x;
     let reach = sqrt(yy);
-    let det = max(xx * yy - xy * xy, GLINT_RECONSTRUCTION_RADIUS2 * GLINT_RECONSTRUCTION_RADIUS2);
+    let inverse_yy = 1.0 / yy;
+    let shear = xy * inverse_yy;
+    let half2 = max(xx - xy * shear, GLINT_RECONSTRUCTION_RADIUS2);
     return GlintLevelWindow(
         vec2i(base),
         centre,
-        yy,
-        vec3f(yy, -xy, xx) / det,
+        shear,
+        inverse_yy,
+        half2,
+        1.0 / half2,
         i32(ceil(centre.y - reach - 0.5)),
         i32(floor(centre.y + reach - 0.5)),
     );
 }
 
-// First and last column of a row, relative to the base cell, whose centres lie in the ellipse.
-fn glint_row_span(window: GlintLevelWindow, row: i32) -> vec2i {
+// The columns of a row whose centres lie in the ellipse.
+fn glint_row_span(window: GlintLevelWindow, row: i32) -> GlintRowSpan {
     let dy = f32(row) + 0.5 - window.centre.y;
-    let mid = window.centre.x - window.inverse.y / window.inverse.x * dy;
-    let half = sqrt(max(1.0 - dy * dy / window.yy, 0.0) / window.inverse.x);
-    return vec2i(i32(ceil(mid - half - 0.5)), i32(floor(mid + half - 0.5)));
+    let middle = window.centre.x - 0.5 + window.shear * dy;
+    let rim = max(1.0 - dy * dy * window.inverse_yy, 0.0);
+    let half = sqrt(rim * window.half2);
+    return GlintRowSpan(middle, rim, i32(ceil(middle - half)), i32(floor(middle + half)));
 }
 
-// Weight, not yet normalised, of a cell by its place relative to the base cell.
-fn glint_cell_weight(window: GlintLevelWindow, column: i32, row: i32) -> f32 {
-    let dx = f32(column) + 0.5 - window.centre.x;
-    let dy = f32(row) + 0.5 - window.centre.y;
-    let r2 = window.inverse.x * dx * dx + 2.0 * window.inverse.y * dx * dy + window.inverse.z * dy * dy;
-    let inside = max(1.0 - r2, 0.0);
+// Weight, not yet normalised, of a cell of a row by its column.
+fn glint_cell_weight(window: GlintLevelWindow, span: GlintRowSpan, column: i32) -> f32 {
+    let dx = f32(column) - span.middle;
+    let inside = max(span.rim - dx * dx * window.inverse_half2, 0.0);
     return inside * inside;
 }
 
@@ -352,12 +380,26 @@ fn glint_level_sdf(
     var coverage = 0.0;
     var total = 0.0;
     var cells = 0u;
-    for (var row = window.first_row; row <= window.last_row; row++) {
-        let span = glint_row_span(window, row);
-        let y = u32(window.base.y + row) << level;
-        let key = glint_row_key(y, material.seed);
-        for (var column = span.x; column <= span.y; column++) {
-            let weight = glint_cell_weight(window, column, row);
+    var row = window.first_row - 1;
+    var span = GlintRowSpan(0.0, 0.0, 0, -1);
+    var column = 0;
+    var y = 0u;
+    var key = 0u;
+    // One loop, in which pixels side by side wait for the one with most cells, not in each row for its longest.
+    loop {
+        if column > span.last {
+            row += 1;
+            if row > window.last_row {
+                break;
+            }
+            span = glint_row_span(window, row);
+            column = span.first;
+            y = u32(window.base.y + row) << level;
+            key = glint_row_key(y, material.seed);
+        }
+        // A row near the rim may hold no centre.
+        if column <= span.last {
+            let weight = glint_cell_weight(window, span, column);
             let x = u32(window.base.x + column) << level;
             let state = glint_cell_state_in_row(x, y, key, material.seed);
             let cell = glint_cell_sdf(tables, material, state, count_level, query);
@@ -365,6 +407,7 @@ fn glint_level_sdf(
             coverage += cell.covered * weight;
             total += weight;
             cells += 1u;
+            column += 1;
         }
     }
     return GlintSlopeSum(sdf / total, coverage / total, cells);

@@ -5,7 +5,7 @@
 //! target has beyond the domain counts.
 
 use super::baked::Dictionary;
-use super::eval::{MAX_ANISOTROPY, RECONSTRUCTION_RADIUS2};
+use super::eval::{MAX_ANISOTROPY, PIXEL_RADIUS2, widened};
 use super::options::{DOMAIN_STDS, DictionaryOptions};
 use glint_formats::dictionary::MeasuredError;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
@@ -197,9 +197,10 @@ fn independent_variance(options: &DictionaryOptions, level: u32, x: f64) -> f64 
 pub fn max_cells(max_anisotropy: f32) -> u32 {
     let ratio = max_anisotropy.clamp(1.0, MAX_ANISOTROPY);
     let mut bound = 0.0;
-    for minor in [2.0f32, 1.0] {
-        let short = (minor * minor + RECONSTRUCTION_RADIUS2).sqrt();
-        let long = (minor * minor * ratio * ratio + RECONSTRUCTION_RADIUS2).sqrt();
+    for minor in [1.0f32, 0.5] {
+        let minor2 = PIXEL_RADIUS2 * minor * minor;
+        let short = widened(minor2).sqrt();
+        let long = widened(minor2 * ratio * ratio).sqrt();
         bound += std::f32::consts::PI * (short + 0.75) * (long + 0.75);
     }
     bound.ceil() as u32

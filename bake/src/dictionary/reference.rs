@@ -122,15 +122,17 @@ pub fn patch_sdf(
     let minor = minor_axis.length().max(major / ratio);
     let direction = major_axis.normalize_or(DVec2::X);
 
-    let lod = minor.max(1.0).log2();
+    // The finer of two levels has cells of one to two pixels.
+    let lod = (2.0 * minor).max(1.0).log2();
     let fine = lod.floor();
     let mut sum = [0.0; 3];
     let mut coverage = 0.0;
     for (level, share) in [(fine, 1.0 - (lod - fine)), (fine + 1.0, lod - fine)] {
         let cell = level.exp2();
         let centre = pixel.position.as_dvec2() * unit / cell;
-        let long = ((major / cell).powi(2) + 0.64).sqrt();
-        let short = ((minor / cell).powi(2) + 0.64).sqrt();
+        // A weight of squared radius 2/3 has the variance of a square pixel, an eighth of it.
+        let radius = |axis: f64| ((axis / cell).powi(4) * 4.0 / 9.0 + 0.36).powf(0.25);
+        let (long, short) = (radius(major), radius(minor));
         let reach = long.ceil() as i64 + 1;
         let (mut level_sum, mut level_coverage, mut total) = ([0.0; 3], 0.0, 0.0);
         for j in -reach..=reach {
