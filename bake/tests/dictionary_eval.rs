@@ -1,8 +1,10 @@
 //! The run-time twin against the f64 reference: hash, cells under the footprint, slope distribution.
 
 use glam::{DVec2, Vec2, Vec3};
+use glint_bake_core::dictionary::baked::Tables;
 use glint_bake_core::dictionary::eval::{
-    DictionaryMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_rotation, log1p_over_x, patch_sdf, smooth_sdf,
+    DictionaryMaterial, PixelFootprint, PixelOnSurface, SlopeQuery, SlopeSum, TARGET_BECKMANN, TARGET_GGX,
+    cell_rotation, cell_sdf, facet_level, level_sdf, log1p_over_x, patch_sdf, slope_query, smooth_sdf,
 };
 use glint_bake_core::dictionary::eval::{
     PIXEL_RADIUS2, RECONSTRUCTION_RADIUS2, cell_weight, level_window, pixel_footprint, row_span,
@@ -135,6 +137,70 @@ fn every_cell_of_the_ellipse_is_visited_once_and_the_count_is_bounded() {
             max_cells(ratio)
         );
     }
+}
+
+/// [`level_sdf`] without its early ways out.
+fn every_cell(
+    tables: &Tables,
+    m: &DictionaryMaterial,
+    footprint: PixelFootprint,
+    position: Vec2,
+    level: u32,
+    query: &SlopeQuery,
+) -> SlopeSum {
+    let window = level_window(footprint, position, level);
+    let (mut sdf, mut coverage, mut total, mut cells) = (Vec3::ZERO, 0.0, 0.0, 0);
+    for row in window.first_row..=window.last_row {
+        let span = row_span(window, row);
+        for column in span.first..=span.last {
+            let weight = cell_weight(window, span, column);
+            let first = |index: i32| (index as u32) << level;
+            let state = cell_state(first(window.base.x + column), first(window.base.y + row), m.seed);
+            let cell = cell_sdf(tables, m, state, facet_level(tables, m, level), query);
+            sdf += cell.sdf * weight;
+            coverage += cell.covered * weight;
+            total += weight;
+            cells += 1;
+        }
+    }
+    SlopeSum { sdf: sdf / total, coverage: coverage / total, cells }
+}
+
+#[test]
+fn beyond_the_tables_no_cell_is_hashed_and_nothing_changes() {
+    let tables = bake(&DictionaryOptions { marginals: 32, ..Default::default() }, &Silent).unwrap().tables();
+    let mut rng = Pcg64::seed_from_u64(19);
+    let (mut left_out, mut smooth) = (0, 0);
+    for case in 0..20_000 {
+        let mut m = material(if case % 2 == 0 { TARGET_BECKMANN } else { TARGET_GGX });
+        m.alpha = Vec2::splat(0.02 + uniform(&mut rng));
+        // Up to densities at which some cells, or all, are smooth.
+        m.density = (uniform(&mut rng) * 80.0).exp2();
+        m.density_randomisation = [0.0, 0.01, 2.0][case % 3];
+        m.relative_area = if case % 7 == 0 { 0.5 } else { 1.0 };
+        let size = (uniform(&mut rng) * 8.0).exp2();
+        let footprint = pixel_footprint(Vec2::new(size, 0.3 * size), Vec2::new(0.0, 0.7 * size), 4.0);
+        let position = Vec2::new(uniform(&mut rng), uniform(&mut rng)) * 1000.0;
+        // Around √2 times the domain, in units of the material's roughness; GGX's map puts it farther.
+        let mut radius =
+            tables.domain / tables.alpha_dict * std::f32::consts::SQRT_2 * (0.999 + 0.003 * uniform(&mut rng));
+        if m.normal_target == TARGET_GGX {
+            radius = (radius * radius).exp_m1().sqrt();
+        }
+        let slope = Vec2::from_angle(uniform(&mut rng) * std::f32::consts::TAU) * radius * m.alpha;
+        let query = slope_query(&tables, &m, slope);
+        let level = footprint.lod as u32;
+        let found = level_sdf(&tables, &m, footprint, position, level, &query);
+        let expected = every_cell(&tables, &m, footprint, position, level, &query);
+        // Where all cells are smooth none is visited either, and the mean of equal values is rounded otherwise.
+        if found.cells > 0 || found.sdf == Vec3::ZERO {
+            assert_eq!((found.sdf, found.coverage), (expected.sdf, expected.coverage), "case {case}: {m:?} {slope}");
+        }
+        left_out += u32::from(query.outside && found.cells == 0 && found.sdf == Vec3::ZERO);
+        smooth += u32::from(query.outside && found.cells > 0 && found.sdf != Vec3::ZERO);
+    }
+    println!("{left_out} without a cell, {smooth} with smooth ones");
+    assert!(left_out > 3000 && smooth > 100, "{left_out} {smooth}");
 }
 
 #[test]

@@ -155,6 +155,8 @@ pub struct SlopeQuery {
     pub jacobian: f32,
     /// The smooth target.
     pub smooth_sdf: f32,
+    /// Whether the slope lies beyond the tables however it is turned, so that cells below the smooth level have density 0.
+    pub outside: bool,
 }
 
 /// Slope distribution of one cell.
@@ -342,7 +344,11 @@ pub fn slope_query(tables: &Tables, material: &DictionaryMaterial, slope: Vec2) 
         q_dict = q * ratio;
         jacobian /= 1.0 + q;
     }
-    SlopeQuery { in_dict: v * stretch, q_dict, jacobian, smooth_sdf: smooth_sdf(material, slope) }
+    let in_dict = v * stretch;
+    // The larger component of what is turned is its length over √2 at least; rounding takes less than is added.
+    let farthest = 1.414_4 * tables.domain;
+    let outside = in_dict.x * in_dict.x + in_dict.y * in_dict.y >= farthest * farthest;
+    SlopeQuery { in_dict, q_dict, jacobian, smooth_sdf: smooth_sdf(material, slope), outside }
 }
 
 /// Slope distribution of one cell (Eq. 11): `state` is that of the cell's coherent index (Eq. 8), its first
@@ -391,9 +397,14 @@ pub fn level_sdf(
     query: &SlopeQuery,
 ) -> SlopeSum {
     let count_level = facet_level(tables, material, level);
-    let surely_smooth = count_level - 6.0 * material.density_randomisation >= tables.levels as f32 - 0.5;
-    if surely_smooth && material.relative_area >= 1.0 {
+    // The normal number of a cell's density is within 5.8.
+    let spread = 6.0 * material.density_randomisation;
+    let last = tables.levels as f32 - 0.5;
+    if material.relative_area >= 1.0 && count_level - spread >= last {
         return SlopeSum { sdf: material.mean_colour * query.smooth_sdf, coverage: 1.0, cells: 0 };
+    }
+    if material.relative_area >= 1.0 && query.outside && count_level + spread < last {
+        return SlopeSum { sdf: Vec3::ZERO, coverage: 1.0, cells: 0 };
     }
     let window = level_window(footprint, position, level);
     let mut sdf = Vec3::ZERO;

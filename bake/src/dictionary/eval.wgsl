@@ -129,6 +129,8 @@ struct GlintSlopeQuery {
     jacobian: f32,
     // The smooth target.
     smooth_sdf: f32,
+    // Whether cells below the smooth level have density 0, however they are turned.
+    outside: bool,
 }
 
 // Slope distribution of one cell.
@@ -321,7 +323,10 @@ fn glint_slope_query(
         q_dict = q * ratio;
         jacobian /= 1.0 + q;
     }
-    return GlintSlopeQuery(v * stretch, q_dict, jacobian, glint_smooth_sdf(material, slope));
+    let in_dict = v * stretch;
+    let farthest = 1.4144 * tables.domain;
+    let outside = in_dict.x * in_dict.x + in_dict.y * in_dict.y >= farthest * farthest;
+    return GlintSlopeQuery(in_dict, q_dict, jacobian, glint_smooth_sdf(material, slope), outside);
 }
 
 // Slope distribution of one cell (Eq. 11). `state` is that of the cell's first cell of level 0 (Eq. 8).
@@ -371,9 +376,13 @@ fn glint_level_sdf(
     query: GlintSlopeQuery,
 ) -> GlintSlopeSum {
     let count_level = glint_facet_level(tables, material, level);
-    let surely_smooth = count_level - 6.0 * material.density_randomisation >= f32(tables.levels) - 0.5;
-    if surely_smooth && material.relative_area >= 1.0 {
+    let spread = 6.0 * material.density_randomisation;
+    let last = f32(tables.levels) - 0.5;
+    if material.relative_area >= 1.0 && count_level - spread >= last {
         return GlintSlopeSum(material.mean_colour * query.smooth_sdf, 1.0, 0u);
+    }
+    if material.relative_area >= 1.0 && query.outside && count_level + spread < last {
+        return GlintSlopeSum(vec3f(0.0), 1.0, 0u);
     }
     let window = glint_level_window(footprint, position, level);
     var sdf = vec3f(0.0);
