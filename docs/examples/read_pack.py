@@ -47,7 +47,7 @@ PARAMETERS = {
     "ENPP": dict(
         face_size="u32", per_size="u32", kernel=("enum", ["Ndf", "GgxNl", "GgxSoft"]),
         roughness=("list", "f64"), radiance_scale="f64", levels=("list", "f64"),
-        level_choice=("enum", ["Optimal", "LogUniform"]), coloured="bool", albedo_size="u32", source_width="u32",
+        level_choice=("enum", ["Optimal", "LogUniform"]), coloured="bool", albedo_size="u32", look_ups="u32", source_width="u32",
         source_height="u32", negative_pixels="u64", mean_radiance=("array", 3, "f64"), filter_error="f64",
         max_error=("option", "f64"),
         measured=dict(reads=("list", dict(count="u32", relative="f64", of_mean="f64", worst="f64")),

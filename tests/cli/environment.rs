@@ -35,7 +35,8 @@ fn sky(args: &'static [&'static str]) -> Case {
 #[test]
 fn an_environment_verifies_and_is_described() {
     let case = sky(&SMALL);
-    let flags = ["--levels", "8", "--coloured", "--json", "--report", "r.json", "--depfile", "out.d"];
+    let flags =
+        ["--levels", "8", "--coloured", "--look-ups", "3", "--json", "--report", "r.json", "--depfile", "out.d"];
     let done = case.bake(&flags).ok();
     assert!(done.stderr.contains("sky: 16² × 6, 4 roughnesses") && done.stderr.contains("written"), "{}", done.stderr);
     case.verify();
@@ -46,6 +47,7 @@ fn an_environment_verifies_and_is_described() {
     let params = &report["environments"][0]["params"];
     assert_eq!((&params["face_size"], &params["kernel"]), (&16.into(), &"ggx-soft".into()));
     assert_eq!((params["levels"].as_array().unwrap().len(), &params["coloured"]), (8, &true.into()));
+    assert_eq!(params["look_ups"], 3);
     assert!(params["measured"]["energy"].as_f64().unwrap() < 1e-3);
     assert!(params["radiance_scale"].as_f64().unwrap() > 1.0);
     assert_eq!(report["provenance"][0]["method"], "environment");
@@ -58,6 +60,8 @@ fn an_environment_verifies_and_is_described() {
         "reads        α ≥ 0.04: relative error ",
         "32 × 16 pixels, 0 of them negative",
         "levels       optimal, with colours: 0.00000 ",
+        "look-ups     3 for a surface",
+        "64 × 64 × 4 layers",
     ] {
         assert!(text.contains(part), "{part} is missing from:\n{text}");
     }
@@ -76,6 +80,7 @@ fn the_same_pack_on_any_number_of_threads_and_from_other_flags_another() {
         &["--kernel", "ggx-nl", "--filter-error", "0.01"],
         &["--kernel", "ndf"],
         &["--roughnesses", "2"],
+        &["--look-ups", "2"],
         &["--max-error", "0.9"],
         &["--compress"],
         &["--min-face-size", "4", "--measure", "0", "--filter-error", "0.02"],
@@ -124,6 +129,8 @@ fn what_cannot_be_used_is_refused_with_its_reason() {
         (&["--levels", "17"], 2),
         (&["--levels", "none"], 2),
         (&["--roughnesses", "9"], 2),
+        (&["--look-ups", "0"], 2),
+        (&["--look-ups", "4"], 2),
         (&["--filter-error", "0"], 2),
         (&["--max-error", "0"], 2),
         (&["--max-error", "0.1", "--measure", "0"], 2),

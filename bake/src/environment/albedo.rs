@@ -1,20 +1,20 @@
-//! Directional albedo E_ρ and visible reflecting area E_D of GGX, over view angle and roughness.
+//! Directional albedo E_ρ, visible reflecting area E_D and mean square ⟨ρ²⟩ of GGX, over view angle and roughness.
 //!
-//! Paper: Eq. 11 and 21. Both are integrals over half vectors h with dω_i = 4 (h·ω_o) dh:
+//! Paper: Eq. 11 and 21. All are integrals over half vectors h with dω_i = 4 (h·ω_o) dh:
 //!
 //! - E_D = ∫ D(h) [n·ω_i > 0] dh. A facet at θ_h reflects to above the horizon for azimuths with
 //!   cos φ > (cos θ_o / (2 cos θ_h) − cos θ_h cos θ_o) / (sin θ_h sin θ_o), so the integral over azimuth is an arc.
 //! - E_ρ = ∫ F G₂ (h·ω_o) / (n·ω_o) D(h) dh over the same facets, G₂ Smith's height-correlated. Schlick's Fresnel factor
 //!   F₀ + (1 − F₀)(1 − h·ω_o)⁵ splits it into F₀ R + G.
+//! - ⟨ρ²⟩ = D_H ∫ (F G₂ (h·ω_o) / (n·ω_o))² D(h) dh, the mean square of what a facet adds under even light, where E_ρ is the mean. The
+//!   paper has none: it takes all E_D/D_H facets that reflect as equally bright. As many equally bright facets as have both
+//!   moments are the share (E_ρ)²/⟨ρ²⟩ of all, at most E_D/D_H by Cauchy and Schwarz.
 //!
 //! Facets are integrated over x = ln(1 + tan² θ_h/α²), in which GGX's tails are even. Up to θ_h = (π/2 − θ_o)/2 all
 //! azimuths are visible, beyond (π/2 + θ_o)/2 none; between, the arc has square-root ends, which a cosine smooths.
 
-use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Edge of the table.
-pub(super) const SIZE: u32 = 64;
 /// Weights and nodes on (−1, 1) of Gauss quadrature with 16 points, the positive half.
 const GAUSS16: [(f64, f64); 8] = [
     (0.095_012_509_837_637_44, 0.189_450_610_455_068_5),
@@ -60,7 +60,7 @@ fn atanh_over(alpha: f64) -> f64 {
     }
 }
 
-/// One entry of the table: albedo is F₀ · `scale` + `bias`.
+/// What an entry of the table has of areas: albedo is F₀ · `scale` + `bias`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Areas {
     /// Factor of F₀.
@@ -71,13 +71,25 @@ pub struct Areas {
     pub reflecting: f64,
     /// Whole facet area D_H.
     pub whole: f64,
+    /// ⟨ρ²⟩ = F₀² · first + 2 F₀ · second + third.
+    pub squares: [f64; 3],
+}
+
+impl Areas {
+    /// ⟨ρ²⟩/(E_ρ)² of the part of F₀, of both parts crossed, and of the part that is there at F₀ = 0. With x = F₀ `scale` / (F₀ `scale` +
+    /// `bias`) that of both together is first · x² + 2 · second · x (1 − x) + third · (1 − x)².
+    pub fn dispersion(&self) -> [f64; 3] {
+        let [scale, crossed, bias] = self.squares;
+        [scale / (self.scale * self.scale), crossed / (self.scale * self.bias), bias / (self.bias * self.bias)]
+    }
 }
 
 /// The areas at one view cosine and roughness, both above 0.
 pub fn areas(cos_o: f64, alpha: f64) -> Areas {
     let a = alpha * alpha;
     let sin_o = (1.0 - cos_o * cos_o).max(0.0).sqrt();
-    let mut sum = Areas { whole: facet_area(alpha), ..Areas::default() };
+    let whole = facet_area(alpha);
+    let mut sum = Areas { whole, ..Areas::default() };
     let mut add = |x: f64, weight: f64| {
         let grown = libm::exp(x);
         let tangent2 = a * (grown - 1.0);
@@ -91,10 +103,15 @@ pub fn areas(cos_o: f64, alpha: f64) -> Areas {
             let oh = sin_h * sin_o * libm::cos(phi) + cos_h * cos_o;
             let cos_i = 2.0 * oh * cos_h - cos_o;
             if cos_i > 0.0 && oh > 0.0 {
-                let part = 2.0 * weight * facets * masking(cos_o, cos_i, a) * oh / cos_o;
+                let part = 2.0 * weight * facets;
                 let schlick = (1.0 - oh).max(0.0).powi(5);
-                sum.scale += part * (1.0 - schlick);
-                sum.bias += part * schlick;
+                let facet = masking(cos_o, cos_i, a) * oh / cos_o;
+                let [scale, bias] = [1.0 - schlick, schlick].map(|fresnel| facet * fresnel);
+                sum.scale += part * scale;
+                sum.bias += part * bias;
+                for (sum, square) in sum.squares.iter_mut().zip([scale * scale, scale * bias, bias * bias]) {
+                    *sum += whole * part * square;
+                }
             }
         });
     };
@@ -124,21 +141,4 @@ fn visible_arc(cos_o: f64, sin_o: f64, cos_h: f64, sin_h: f64) -> f64 {
 fn masking(cos_o: f64, cos_i: f64, a: f64) -> f64 {
     let term = |c: f64| (a + (1.0 - a) * c * c).sqrt();
     2.0 * cos_o * cos_i / (cos_o * term(cos_i) + cos_i * term(cos_o))
-}
-
-/// View cosine of a column and roughness of a row.
-fn arguments(column: u32, row: u32) -> (f64, f64) {
-    let [u, v] = [column, row].map(|k| (f64::from(k) + 0.5) / f64::from(SIZE));
-    (u, v * v)
-}
-
-/// The table, row by row.
-pub(super) fn table() -> Vec<Areas> {
-    (0..SIZE * SIZE)
-        .into_par_iter()
-        .map(|k| {
-            let (cos_o, alpha) = arguments(k % SIZE, k / SIZE);
-            areas(cos_o, alpha)
-        })
-        .collect()
 }

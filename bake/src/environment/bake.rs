@@ -2,7 +2,6 @@
 //!
 //! Paper: section 5. Radiance and indicators have the same weights in every texel, so they are filtered together.
 
-use super::albedo;
 use super::baked::Environment;
 use super::cube::{resampled_row, texel_solid_angle_sr};
 use super::image::{EnvironmentImage, luminance};
@@ -13,6 +12,7 @@ use super::prefilter::filter_cube;
 use super::quality;
 use super::rounding::{self, Texels, half_bits, radiance_scale, rounding_error, shared_exponent};
 use super::source::{BASE_CHANNELS, Source};
+use super::table;
 use super::tree::Tree;
 use crate::error::{BakeError, Result};
 use crate::progress::Progress;
@@ -38,7 +38,8 @@ pub fn bake(image: &EnvironmentImage, options: &EnvironmentOptions, progress: &d
         coloured: options.coloured,
         levels,
         level_choice: options.level_choice,
-        albedo_size: albedo::SIZE,
+        albedo_size: table::SIZE,
+        look_ups: options.look_ups,
         source_width: image.width,
         source_height: image.height,
         negative_pixels: image.report.negative_pixels,
@@ -64,11 +65,7 @@ pub fn bake(image: &EnvironmentImage, options: &EnvironmentOptions, progress: &d
         let stored = if index == 0 { &mut environment.mirror } else { &mut environment.radiance };
         stored.extend(stored_radiance(&texels, environment.params.radiance_scale));
     }
-    environment.albedo = albedo::table()
-        .into_iter()
-        .flat_map(|areas| [areas.scale, areas.bias, areas.reflecting, areas.whole])
-        .map(half_bits)
-        .collect();
+    environment.albedo = table::albedo(options.kernel, options.look_ups);
     quality::measure(image, options.measured_reads, &mut environment, progress);
     check_error(&environment)?;
     Ok(environment)

@@ -18,7 +18,7 @@ pub struct Environment {
     pub indicators: Vec<u16>,
     /// Colours of levels from 1 on, a layer each; empty when levels have none.
     pub colours: Vec<u32>,
-    /// Albedo table: scale and bias of F₀, visible reflecting area, whole facet area, as half floats.
+    /// Albedo and look-ups, layer by layer as the section has them, as half floats.
     pub albedo: Vec<u16>,
 }
 
@@ -59,9 +59,10 @@ impl Environment {
         from_shared_exponent(self.colours[before + layer * texels + self.texel(index, face, i, j)])
     }
 
-    /// Entry of the albedo table.
-    pub fn albedo_texel(&self, column: u32, row: u32) -> [f32; 4] {
-        let at = 4 * (row * self.params.albedo_size + column) as usize;
+    /// Entry of layer `layer` of the albedo table.
+    pub fn albedo_texel(&self, layer: u32, column: u32, row: u32) -> [f32; 4] {
+        let size = self.params.albedo_size;
+        let at = 4 * ((layer * size + row) * size + column) as usize;
         [0, 1, 2, 3].map(|c| f16::from_bits(self.albedo[at + c]).to_f32())
     }
 }

@@ -5,6 +5,8 @@
 //! multinomial, drawn by [`multinomial`]. Twin: `eval.wgsl`; what that asks of the including program is in `lookup.rs`. Deviations:
 //! - what the levels give is brought to the variance that was filtered besides radiance by [`std_factor`], so the variance of
 //!   glints is right for any levels: each facet that is there takes part of the mean, and part of its level. No facet, no light;
+//! - the lobe of a surface seen at an angle is that of one to three fitted look-ups (`fitted.rs`), and the facets that reflect are as many
+//!   as give the variance that their different reflectances have ([`visible_share`]);
 //! - coloured levels: every channel is a mean of its own, so a red lamp's glints are red and their mean stays the smooth
 //!   reflection.
 
@@ -40,8 +42,8 @@ pub struct Chances {
     pub moments: [f32; 2],
     /// Factor on the standard deviation of what the levels give, 0 to 1.
     pub std_factor: f32,
-    /// Where the smooth reflection looks, unit length.
-    pub mirror: Vec3,
+    /// Where the first look-up looks, unit length.
+    pub towards: Vec3,
     /// Mip of the colours of levels, 0 to the last.
     pub colour_mip: f32,
 }
@@ -59,6 +61,15 @@ pub struct Roughness {
     pub mirror: f32,
     /// Mip of the colours of levels, 0 to the last.
     pub colour_mip: f32,
+}
+
+/// One of the round look-ups that stand for the lobe of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LookUp {
+    /// Where it looks, unit length.
+    pub direction: Vec3,
+    /// What roughness it reads.
+    pub roughness: Roughness,
 }
 
 /// Mip and layer of filtered roughness `index`, 0 for the least.
@@ -93,31 +104,53 @@ pub fn environment_filtered(environment: &Environment, direction: Vec3, roughnes
     [0, 1, 2, 3].map(|c| (1.0 - roughness.share) * low[c] + roughness.share * high[c])
 }
 
-/// Radiance of a roughness around a direction: R, G, B and root mean square luminance; `filtered` is [`environment_filtered`].
+/// Radiance of a roughness around a direction, linear RGB; `filtered` is that of [`environment_filtered`].
 pub fn environment_radiance(
     environment: &Environment,
     direction: Vec3,
     roughness: &Roughness,
-    filtered: [f32; 4],
-) -> [f32; 4] {
+    filtered: [f32; 3],
+) -> [f32; 3] {
     let mirror = mirror_at(environment, direction);
-    [0, 1, 2, 3].map(|c| (1.0 - roughness.mirror) * filtered[c] + roughness.mirror * mirror[c])
+    [0, 1, 2].map(|c| (1.0 - roughness.mirror) * filtered[c] + roughness.mirror * mirror[c])
 }
 
-/// Scale and bias of F₀, visible reflecting area and whole facet area at a view cosine and roughness.
-pub fn environment_areas(environment: &Environment, cos_o: f32, alpha: f32) -> [f32; 4] {
-    albedo_at(environment, [cos_o.clamp(0.0, 1.0), alpha.clamp(0.0, 1.0).sqrt()])
+/// Layer `layer` of the table by view cosine and roughness.
+pub fn environment_table(environment: &Environment, layer: u32, surface: &Surface) -> [f32; 4] {
+    let cos_o = surface.normal.dot(surface.view);
+    albedo_at(environment, layer, [cos_o.clamp(0.0, 1.0), surface.alpha.clamp(0.0, 1.0).sqrt()])
+}
+
+/// A look-up of shift κ and a ratio of roughnesses: in the plane of incidence, κ above 0 towards the normal.
+pub fn environment_look_up(environment: &Environment, surface: &Surface, shift: f32, ratio: f32) -> LookUp {
+    let cos_o = surface.normal.dot(surface.view);
+    let mirror = 2.0 * cos_o * surface.normal - surface.view;
+    let direction = (mirror + shift * surface.alpha * (surface.normal - cos_o * mirror)).normalize();
+    LookUp { direction, roughness: environment_roughness(environment, ratio * surface.alpha) }
+}
+
+/// Filtered radiance of the look-ups of a surface, of which `first` is the first: R, G, B and mean square luminance.
+pub fn environment_lobe(environment: &Environment, surface: &Surface, first: &LookUp) -> [f32; 4] {
+    let squared = |[r, g, b, root]: [f32; 4]| [r, g, b, root * root];
+    let alone = squared(environment_filtered(environment, first.direction, &first.roughness));
+    let mut sum = alone;
+    for layer in 2..=environment.uniform.look_ups {
+        let [shift, ratio, share, _] = environment_table(environment, layer, surface);
+        let look_up = environment_look_up(environment, surface, shift, ratio);
+        let filtered = squared(environment_filtered(environment, look_up.direction, &look_up.roughness));
+        (0..4).for_each(|c| sum[c] += share * (filtered[c] - alone[c]));
+    }
+    // Rounding may leave a little less than nothing of the first.
+    sum.map(|c| c.max(0.0))
 }
 
 /// Image-based light without glints: the smooth reflection (Eq. 11), linear RGB.
 pub fn environment_smooth(environment: &Environment, surface: &Surface) -> [f32; 3] {
-    let cos_o = surface.normal.dot(surface.view);
-    let mirror = 2.0 * cos_o * surface.normal - surface.view;
-    let [scale, bias, ..] = environment_areas(environment, cos_o, surface.alpha);
-    let roughness = environment_roughness(environment, surface.alpha);
-    let filtered = environment_filtered(environment, mirror, &roughness);
-    let radiance = environment_radiance(environment, mirror, &roughness, filtered);
-    [0, 1, 2].map(|c| (surface.f0 * scale + bias) * radiance[c])
+    let [scale, bias, shift, ratio] = environment_table(environment, 0, surface);
+    let first = environment_look_up(environment, surface, shift, ratio);
+    let [r, g, b, _] = environment_lobe(environment, surface, &first);
+    let radiance = environment_radiance(environment, first.direction, &first.roughness, [r, g, b]);
+    radiance.map(|c| (surface.f0 * scale + bias) * c)
 }
 
 /// Sum of a list over the first `count` levels.
@@ -139,8 +172,8 @@ fn environment_indicators(environment: &Environment, layer: u32, direction: Vec3
     [0, 1, 2, 3].map(|c| (1.0 - roughness.share) * low[c] + roughness.share * high[c])
 }
 
-/// Probabilities that a facet reflects each level (Eq. 15 and 21), with `visible` = E_D / D_H. Level 0 also takes the
-/// facets that reflect nothing.
+/// Probabilities that a facet reflects each level around a direction (Eq. 15 and 21), with `visible` the share of facets that reflect at
+/// all. Level 0 also takes the facets that reflect nothing.
 pub fn level_probabilities(
     environment: &Environment,
     direction: Vec3,
@@ -164,6 +197,35 @@ pub fn level_probabilities(
     p
 }
 
+/// Probabilities that a facet reflects each level by all look-ups of a surface, of which `first` is the first.
+pub fn lobe_probabilities(
+    environment: &Environment,
+    surface: &Surface,
+    first: &LookUp,
+    visible: f32,
+) -> [f32; MAX_LEVELS] {
+    let alone = level_probabilities(environment, first.direction, &first.roughness, visible);
+    let mut p = alone;
+    for layer in 2..=environment.uniform.look_ups {
+        let [shift, ratio, share, _] = environment_table(environment, layer, surface);
+        let look_up = environment_look_up(environment, surface, shift, ratio);
+        let other = level_probabilities(environment, look_up.direction, &look_up.roughness, visible);
+        for ((p, alone), other) in p.iter_mut().zip(alone).zip(other) {
+            *p += share * (other - alone);
+        }
+    }
+    p.map(|p| p.max(0.0))
+}
+
+/// Share of facets that all reflect alike and have the mean and the mean square of those that there are, 0 to 1; `areas` and `squares` are
+/// the first two layers of the table.
+pub fn visible_share(areas: [f32; 4], squares: [f32; 4], f0: f32) -> f32 {
+    let [scaled, bias] = [f0 * areas[0], areas[1]];
+    let x = scaled / (scaled + bias).max(1e-37);
+    let y = 1.0 - x;
+    1.0 / (squares[0] * x * x + 2.0 * squares[1] * x * y + squares[2] * y * y).max(1.0)
+}
+
 /// Mean and second moment of what one facet reflects.
 pub fn facet_moments(environment: &Environment, p: &[f32; MAX_LEVELS]) -> [f32; 2] {
     let level = &environment.uniform.level;
@@ -182,26 +244,26 @@ pub fn std_factor(moments: [f32; 2], square: f32, visible: f32) -> f32 {
 
 /// The smooth reflection and the chances of the levels at a surface point.
 pub fn chances(environment: &Environment, surface: &Surface) -> Chances {
-    let cos_o = surface.normal.dot(surface.view);
-    let mirror = 2.0 * cos_o * surface.normal - surface.view;
-    let roughness = environment_roughness(environment, surface.alpha);
-    let [scale, bias, reflecting, whole] = environment_areas(environment, cos_o, surface.alpha);
-    let filtered = environment_filtered(environment, mirror, &roughness);
-    let radiance = environment_radiance(environment, mirror, &roughness, filtered);
-    let visible = (reflecting / whole).min(1.0);
-    let p = level_probabilities(environment, mirror, &roughness, visible);
+    let areas = environment_table(environment, 0, surface);
+    let [scale, bias, shift, ratio] = areas;
+    let first = environment_look_up(environment, surface, shift, ratio);
+    let [r, g, b, square] = environment_lobe(environment, surface, &first);
+    let radiance = environment_radiance(environment, first.direction, &first.roughness, [r, g, b]);
+    let visible = visible_share(areas, environment_table(environment, 1, surface), surface.f0);
+    let p = lobe_probabilities(environment, surface, &first, visible);
     let moments = facet_moments(environment, &p);
     // Levels are filtered, so the moment beside them is that of what is filtered.
-    let std_factor = std_factor(moments, filtered[3] * filtered[3], visible);
-    let smooth_radiance = [0, 1, 2].map(|c| (surface.f0 * scale + bias) * radiance[c]);
-    Chances { smooth_radiance, p, moments, std_factor, mirror, colour_mip: roughness.colour_mip }
+    let std_factor = std_factor(moments, square, visible);
+    let smooth_radiance = radiance.map(|c| (surface.f0 * scale + bias) * c);
+    let LookUp { direction, roughness } = first;
+    Chances { smooth_radiance, p, moments, std_factor, towards: direction, colour_mip: roughness.colour_mip }
 }
 
 /// Drawn over expected light, channel by channel.
 fn coloured_ratios(environment: &Environment, chances: &Chances, facets: f32, counts: &[f32; MAX_LEVELS]) -> [f32; 3] {
     let (mut drawn, mut expected) = ([0.0; 3], [0.0; 3]);
     for k in 1..environment.params.levels.len() {
-        let colour = colour_at(environment, k as u32 - 1, chances.mirror, chances.colour_mip)
+        let colour = colour_at(environment, k as u32 - 1, chances.towards, chances.colour_mip)
             .map(|c| c * environment.uniform.level[k]);
         for c in 0..3 {
             drawn[c] += colour[c] * counts[k];

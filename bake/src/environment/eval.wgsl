@@ -1,7 +1,7 @@
 // Image-based lighting of glints: filtered radiance, and a draw of how many facets reflect each of a few radiance levels.
 // Kneiphof and Klein 2025, "Real-Time Image-based Lighting of Glints", sections 4 and 5, Eq. 11, 15, 17 and 21.
 // Twin of glint-bake-core environment/eval.rs, where deviations from the paper are derived: the variance of
-// glints is that of the filtered second moment, and levels may have colours.
+// glints is that of the filtered second moment, the lobe seen at an angle is that of fitted look-ups, and levels may have colours.
 //
 // Directions are unit vectors in the environment's frame. Accessors that the including program defines; cubes are filtered between
 // texels and across edges, colours between mips as well, which are whole numbers elsewhere:
@@ -9,7 +9,7 @@
 //   fn glint_environment_radiance_at(layer: u32, direction: vec3f, mip: f32) -> vec4f    section ENRA, the same
 //   fn glint_environment_indicators_at(layer: u32, direction: vec3f, mip: f32) -> vec4f  section ENIN; called for levels > 1
 //   fn glint_environment_colour_at(layer: u32, direction: vec3f, mip: f32) -> vec3f      section ENCO; called if coloured
-//   fn glint_environment_albedo_at(place: vec2f) -> vec4f                                section ENAL, clamped to its edge, place 0 to 1
+//   fn glint_environment_albedo_at(layer: u32, place: vec2f) -> vec4f                    section ENAL, clamped to its edge, place 0 to 1
 
 #import counting::eval
 
@@ -29,6 +29,8 @@ struct GlintEnvironment {
     first_alpha: f32,
     inverse_log: f32,
     bend: f32,
+    // Look-ups of a surface, 1 to 3.
+    look_ups: u32,
 }
 
 // A point of a glittering surface as a pixel sees it, in the environment's frame.
@@ -53,8 +55,8 @@ struct GlintChances {
     moments: vec2f,
     // Factor on the standard deviation of what the levels give, 0 to 1.
     std_factor: f32,
-    // Where the smooth reflection looks.
-    mirror: vec3f,
+    // Where the first look-up looks.
+    towards: vec3f,
     // Mip of the colours of levels.
     colour_mip: f32,
 }
@@ -70,6 +72,12 @@ struct GlintEnvironmentRoughness {
     mirror: f32,
     // Mip of the colours of levels.
     colour_mip: f32,
+}
+
+// One of the round look-ups that stand for the lobe of a surface.
+struct GlintEnvironmentLookUp {
+    direction: vec3f,
+    roughness: GlintEnvironmentRoughness,
 }
 
 // Mip and layer of filtered roughness `index`, 0 for the least.
@@ -102,25 +110,56 @@ fn glint_environment_filtered(direction: vec3f, roughness: GlintEnvironmentRough
     return (1.0 - roughness.share) * low + roughness.share * high;
 }
 
-// Radiance of a roughness: RGB and root mean square luminance; `filtered` is glint_environment_filtered.
-fn glint_environment_radiance(direction: vec3f, roughness: GlintEnvironmentRoughness, filtered: vec4f) -> vec4f {
-    return (1.0 - roughness.mirror) * filtered + roughness.mirror * glint_environment_mirror_at(direction);
+// Radiance of a roughness; `filtered` is that of glint_environment_filtered.
+fn glint_environment_radiance(direction: vec3f, roughness: GlintEnvironmentRoughness, filtered: vec3f) -> vec3f {
+    return (1.0 - roughness.mirror) * filtered + roughness.mirror * glint_environment_mirror_at(direction).rgb;
 }
 
-// Scale and bias of f0, visible reflecting area and whole facet area.
-fn glint_environment_areas(cos_o: f32, alpha: f32) -> vec4f {
-    return glint_environment_albedo_at(vec2f(clamp(cos_o, 0.0, 1.0), sqrt(clamp(alpha, 0.0, 1.0))));
+// Layer `layer` of the table by view cosine and roughness.
+fn glint_environment_table(layer: u32, surface: GlintSurface) -> vec4f {
+    let cos_o = dot(surface.normal, surface.view);
+    return glint_environment_albedo_at(layer, vec2f(clamp(cos_o, 0.0, 1.0), sqrt(clamp(surface.alpha, 0.0, 1.0))));
+}
+
+// A look-up of a shift and a ratio of roughnesses: in the plane of incidence, a shift above 0 towards the normal.
+fn glint_environment_look_up(
+    environment: GlintEnvironment,
+    surface: GlintSurface,
+    shift: f32,
+    ratio: f32,
+) -> GlintEnvironmentLookUp {
+    let cos_o = dot(surface.normal, surface.view);
+    let mirror = 2.0 * cos_o * surface.normal - surface.view;
+    let direction = normalize(mirror + shift * surface.alpha * (surface.normal - cos_o * mirror));
+    return GlintEnvironmentLookUp(direction, glint_environment_roughness(environment, ratio * surface.alpha));
+}
+
+// Filtered radiance of the look-ups of a surface, of which `first` is the first: RGB and mean square luminance.
+fn glint_environment_lobe(
+    environment: GlintEnvironment,
+    surface: GlintSurface,
+    first: GlintEnvironmentLookUp,
+) -> vec4f {
+    let read = glint_environment_filtered(first.direction, first.roughness);
+    let alone = vec4f(read.rgb, read.w * read.w);
+    var sum = alone;
+    for (var layer = 2u; layer <= environment.look_ups; layer++) {
+        let entry = glint_environment_table(layer, surface);
+        let look_up = glint_environment_look_up(environment, surface, entry.x, entry.y);
+        let filtered = glint_environment_filtered(look_up.direction, look_up.roughness);
+        sum += entry.z * (vec4f(filtered.rgb, filtered.w * filtered.w) - alone);
+    }
+    // Rounding may leave a little less than nothing of the first.
+    return max(sum, vec4f(0.0));
 }
 
 // Image-based light without glints: the smooth reflection (Eq. 11).
 fn glint_environment_smooth(environment: GlintEnvironment, surface: GlintSurface) -> vec3f {
-    let cos_o = dot(surface.normal, surface.view);
-    let mirror = 2.0 * cos_o * surface.normal - surface.view;
-    let areas = glint_environment_areas(cos_o, surface.alpha);
-    let roughness = glint_environment_roughness(environment, surface.alpha);
-    let filtered = glint_environment_filtered(mirror, roughness);
-    let radiance = glint_environment_radiance(mirror, roughness, filtered);
-    return (surface.f0 * areas.x + areas.y) * radiance.rgb;
+    let areas = glint_environment_table(0u, surface);
+    let first = glint_environment_look_up(environment, surface, areas.z, areas.w);
+    let filtered = glint_environment_lobe(environment, surface, first).rgb;
+    let radiance = glint_environment_radiance(first.direction, first.roughness, filtered);
+    return (surface.f0 * areas.x + areas.y) * radiance;
 }
 
 fn glint_levels_sum(levels: GlintLevels, count: u32) -> f32 {
@@ -160,8 +199,8 @@ fn glint_environment_indicators(
     return (1.0 - roughness.share) * low + roughness.share * high;
 }
 
-// Probabilities that a facet reflects each level (Eq. 15 and 21), with `visible` = E_D / D_H. Level 0 also takes the facets that
-// reflect nothing.
+// Probabilities that a facet reflects each level around a direction (Eq. 15 and 21), with `visible` the share of facets that reflect at
+// all. Level 0 also takes the facets that reflect nothing.
 fn glint_level_probabilities(
     environment: GlintEnvironment,
     direction: vec3f,
@@ -200,6 +239,37 @@ fn glint_level_probabilities(
     return p;
 }
 
+// Probabilities that a facet reflects each level by all look-ups of a surface, of which `first` is the first.
+fn glint_lobe_probabilities(
+    environment: GlintEnvironment,
+    surface: GlintSurface,
+    first: GlintEnvironmentLookUp,
+    visible: f32,
+) -> GlintLevels {
+    let alone = glint_level_probabilities(environment, first.direction, first.roughness, visible);
+    var p = alone;
+    for (var layer = 2u; layer <= environment.look_ups; layer++) {
+        let entry = glint_environment_table(layer, surface);
+        let look_up = glint_environment_look_up(environment, surface, entry.x, entry.y);
+        let other = glint_level_probabilities(environment, look_up.direction, look_up.roughness, visible);
+        p.a += entry.z * (other.a - alone.a);
+        p.b += entry.z * (other.b - alone.b);
+        p.c += entry.z * (other.c - alone.c);
+        p.d += entry.z * (other.d - alone.d);
+    }
+    let none = vec4f(0.0);
+    return GlintLevels(max(p.a, none), max(p.b, none), max(p.c, none), max(p.d, none));
+}
+
+// Share of facets that all reflect alike and have the mean and the mean square of those that there are; `areas` and `squares` are the
+// first two layers of the table.
+fn glint_visible_share(areas: vec4f, squares: vec4f, f0: f32) -> f32 {
+    let scaled = f0 * areas.x;
+    let x = scaled / max(scaled + areas.y, 1.0e-37);
+    let y = 1.0 - x;
+    return 1.0 / max(squares.x * x * x + 2.0 * squares.y * x * y + squares.z * y * y, 1.0);
+}
+
 // Mean and second moment of what one facet reflects.
 fn glint_facet_moments(environment: GlintEnvironment, p: GlintLevels) -> vec2f {
     let level = environment.level;
@@ -220,19 +290,19 @@ fn glint_std_factor(moments: vec2f, square: f32, visible: f32) -> f32 {
 
 // The smooth reflection and the chances of the levels at a surface point.
 fn glint_chances(environment: GlintEnvironment, surface: GlintSurface) -> GlintChances {
-    let cos_o = dot(surface.normal, surface.view);
-    let mirror = 2.0 * cos_o * surface.normal - surface.view;
-    let roughness = glint_environment_roughness(environment, surface.alpha);
-    let areas = glint_environment_areas(cos_o, surface.alpha);
-    let filtered = glint_environment_filtered(mirror, roughness);
-    let radiance = glint_environment_radiance(mirror, roughness, filtered);
-    let visible = min(areas.z / areas.w, 1.0);
-    let p = glint_level_probabilities(environment, mirror, roughness, visible);
+    let areas = glint_environment_table(0u, surface);
+    let first = glint_environment_look_up(environment, surface, areas.z, areas.w);
+    let filtered = glint_environment_lobe(environment, surface, first);
+    let radiance = glint_environment_radiance(first.direction, first.roughness, filtered.rgb);
+    // One draw serves all channels, so its facets have the reflectance that the eye sees.
+    let f0 = dot(surface.f0, vec3f(0.2126, 0.7152, 0.0722));
+    let visible = glint_visible_share(areas, glint_environment_table(1u, surface), f0);
+    let p = glint_lobe_probabilities(environment, surface, first, visible);
     let moments = glint_facet_moments(environment, p);
     // Levels are filtered, so the moment beside them is that of what is filtered.
-    let std_factor = glint_std_factor(moments, filtered.w * filtered.w, visible);
-    let smooth_radiance = (surface.f0 * areas.x + areas.y) * radiance.rgb;
-    return GlintChances(smooth_radiance, p, moments, std_factor, mirror, roughness.colour_mip);
+    let std_factor = glint_std_factor(moments, filtered.w, visible);
+    let smooth_radiance = (surface.f0 * areas.x + areas.y) * radiance;
+    return GlintChances(smooth_radiance, p, moments, std_factor, first.direction, first.roughness.colour_mip);
 }
 
 // Drawn over expected light, channel by channel.
@@ -249,7 +319,7 @@ fn glint_coloured_ratios(
     var drawn = vec3f(0.0);
     var expected = vec3f(0.0);
     for (var k = 1u; k < min(environment.levels, 16u); k++) {
-        let colour = glint_environment_colour_at(k - 1u, chances.mirror, chances.colour_mip) * light[k / 4u][k % 4u];
+        let colour = glint_environment_colour_at(k - 1u, chances.towards, chances.colour_mip) * light[k / 4u][k % 4u];
         drawn += colour * drawn_counts[k / 4u][k % 4u];
         expected += colour * (p[k / 4u][k % 4u] * facets);
     }

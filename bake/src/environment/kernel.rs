@@ -36,13 +36,18 @@ pub struct Lobe {
 }
 
 impl Lobe {
+    /// The kernel at roughness α > 0, its integral left at 0.
+    pub fn shape(kernel: Kernel, alpha: f64) -> Lobe {
+        let a = alpha * alpha;
+        Lobe { kernel, a, b: 0.5 * (1.0 - a), integral_sr: 0.0 }
+    }
+
     /// The kernel at roughness α > 0.
     pub fn new(kernel: Kernel, alpha: f64) -> Lobe {
-        let a = alpha * alpha;
-        let mut lobe = Lobe { kernel, a, b: 0.5 * (1.0 - a), integral_sr: 0.0 };
+        let mut lobe = Lobe::shape(kernel, alpha);
         // x = ln(1 + (1 + b/a) t) spreads the peak evenly; Simpson's rule is then exact to about 1e-10.
         const STEPS: u32 = 4096;
-        let stretch = 1.0 + lobe.b / a;
+        let stretch = 1.0 + lobe.b / lobe.a;
         let reach = reach(kernel);
         let end = libm::log1p(stretch * reach);
         let mut sum = 0.0;

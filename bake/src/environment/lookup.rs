@@ -122,8 +122,8 @@ pub fn colour_at(environment: &Environment, layer: u32, direction: Vec3, mip: f3
     sum
 }
 
-/// The albedo table at a place, each coordinate from 0 to 1, clamped to the middles of its outer texels.
-pub(super) fn albedo_at(environment: &Environment, place: [f32; 2]) -> [f32; 4] {
+/// Layer `layer` of the albedo table at a place, each coordinate from 0 to 1, clamped to the middles of its outer texels.
+pub(super) fn albedo_at(environment: &Environment, layer: u32, place: [f32; 2]) -> [f32; 4] {
     let last = (environment.params.albedo_size - 1) as f32;
     let [x, y] = place.map(|c| (c * (last + 1.0) - 0.5).clamp(0.0, last));
     let (i, j) = (x.floor(), y.floor());
@@ -135,7 +135,7 @@ pub(super) fn albedo_at(environment: &Environment, place: [f32; 2]) -> [f32; 4] 
         (0.0, 1.0, (1.0 - fx) * fy),
         (1.0, 1.0, fx * fy),
     ] {
-        let texel = environment.albedo_texel((i + di).min(last) as u32, (j + dj).min(last) as u32);
+        let texel = environment.albedo_texel(layer, (i + di).min(last) as u32, (j + dj).min(last) as u32);
         (0..4).for_each(|c| sum[c] += weight * texel[c]);
     }
     sum

@@ -3,7 +3,7 @@
 //! Method: Kneiphof and Klein 2025, "Real-Time Image-based Lighting of Glints", sections 3.3 to 5. An equirectangular
 //! image ([`image`]) becomes a cube ([`cube`]), and cubes that are filtered with a GGX lobe each ([`kernel`], [`prefilter`]): radiance, its square, and the share of each of a few radiance levels ([`levels`]). At run time ([`eval`], by look-ups as in
 //! [`lookup`]) the shares are the probabilities that a facet reflects each level, scaled by areas that depend on view angle and
-//! roughness only ([`albedo`]), and one draw a pixel is made with the random words of a place on the surface ([`query`]).
+//! roughness only ([`albedo`]), by round look-ups that stand for the lobe seen at an angle ([`fitted`]), and one draw a pixel is made with the random words of a place on the surface ([`query`]).
 //! [`reference`] sums over every pixel in f64 and places facets one by one; [`quality`] measures texels and [`reads`] look-ups by it.
 //!
 //! What deviates from the paper, and why, stands on top of each file and in `docs/methods/environment.md`. The main points:
@@ -18,6 +18,7 @@ mod bake;
 mod baked;
 pub mod cube;
 pub mod eval;
+pub mod fitted;
 pub mod image;
 mod kernel;
 pub mod levels;
@@ -31,6 +32,7 @@ pub mod reference;
 mod rounding;
 pub mod sections;
 mod source;
+mod table;
 mod tree;
 
 crate::shader::shaders!("environment": "eval", "query");

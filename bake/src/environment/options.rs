@@ -3,7 +3,7 @@
 use super::image::EnvironmentImage;
 use super::tree::{BLOCK_BYTES, CELL, REMEMBERED};
 use crate::error::{BakeError, Result};
-use glint_formats::environment::{Kernel, LevelChoice, MAX_FACE_SIZE, MAX_LEVELS, MAX_PER_SIZE};
+use glint_formats::environment::{Kernel, LevelChoice, MAX_FACE_SIZE, MAX_LEVELS, MAX_LOOK_UPS, MAX_PER_SIZE};
 
 /// What a program holds before it bakes.
 const PROGRAM_BYTES: u64 = 8 << 20;
@@ -38,6 +38,8 @@ pub struct EnvironmentOptions {
     pub min_face_size: u32,
     /// Filtered roughnesses of each face size, 1 to [`MAX_PER_SIZE`].
     pub per_size: u32,
+    /// Look-ups that stand for the lobe of a surface seen at an angle, 1 to [`MAX_LOOK_UPS`].
+    pub look_ups: u32,
     /// Radiance levels.
     pub levels: LevelCount,
     /// How they are chosen.
@@ -63,6 +65,7 @@ impl Default for EnvironmentOptions {
             face_size: 256,
             min_face_size: DEFAULT_MIN_FACE_SIZE,
             per_size: DEFAULT_PER_SIZE,
+            look_ups: 1,
             levels: LevelCount::Exactly(4),
             level_choice: LevelChoice::Optimal,
             floor: DEFAULT_FLOOR,
@@ -105,6 +108,9 @@ impl EnvironmentOptions {
         }
         if !(1..=MAX_PER_SIZE).contains(&self.per_size) {
             return bad(format!("roughnesses: expected 1 to {MAX_PER_SIZE} of a face size, found {}", self.per_size));
+        }
+        if !(1..=MAX_LOOK_UPS as u32).contains(&self.look_ups) {
+            return bad(format!("look-ups: expected 1 to {MAX_LOOK_UPS}, found {}", self.look_ups));
         }
         match self.levels {
             LevelCount::Exactly(count) if !(1..=MAX_LEVELS as u32).contains(&count) => {

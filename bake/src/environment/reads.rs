@@ -35,8 +35,8 @@ impl Read {
         let direction = self.direction.as_vec3();
         let roughness = environment_roughness(environment, self.alpha as f32);
         let filtered = environment_filtered(environment, direction, &roughness);
-        let [r, g, b, _] = environment_radiance(environment, direction, &roughness, filtered);
-        luminance([r, g, b].map(f64::from))
+        let [r, g, b, _] = filtered;
+        luminance(environment_radiance(environment, direction, &roughness, [r, g, b]).map(f64::from))
     }
 }
 

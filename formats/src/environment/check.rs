@@ -2,8 +2,8 @@
 
 use crate::bytes::f16_at;
 use crate::environment::{
-    ALBEDO, COLOURS, EnvironmentParams, INDICATORS, MAX_FACE_SIZE, MAX_LEVELS, MAX_PER_SIZE, MIRROR, PARAMS, RADIANCE,
-    UNIFORM, roughness_of,
+    ALBEDO, COLOURS, EnvironmentParams, INDICATORS, MAX_FACE_SIZE, MAX_LEVELS, MAX_LOOK_UPS, MAX_PER_SIZE, MIRROR,
+    PARAMS, RADIANCE, UNIFORM, roughness_of,
 };
 use crate::issue::{Issue, IssueCode};
 use crate::sections::{Loaded, Sections};
@@ -46,7 +46,7 @@ fn check_environment(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut 
     if let Some(albedo) = albedo
         && albedo.expect(shape, params.albedo_resource(), issues)
     {
-        check_values(albedo, IssueCode::EnvironmentAlbedo, issues);
+        check_albedo(albedo, &params, issues);
     }
     if params.levels.len() > 1
         && let Some(indicators) = sections.need(INDICATORS, section, issues)
@@ -84,6 +84,9 @@ fn check_parameters(params: &EnvironmentParams) -> Result<(), String> {
     }
     if !(1..=1024).contains(&params.albedo_size) {
         return Err(format!("expected an albedo table of 1 to 1024 texels square, found {}", params.albedo_size));
+    }
+    if !(1..=MAX_LOOK_UPS as u32).contains(&params.look_ups) {
+        return Err(format!("expected 1 to {MAX_LOOK_UPS} look-ups, found {}", params.look_ups));
     }
     let positive = |value: f64| value > 0.0 && value.is_finite();
     let asked = [Some(params.filter_error), params.max_error];
@@ -144,6 +147,40 @@ fn check_values(section: Loaded<'_>, code: IssueCode, issues: &mut Vec<Issue>) {
                 i / 4
             );
             issues.push(section.error(code, message));
+            return;
+        }
+    }
+}
+
+/// Reports the first number of the albedo table that is not finite, or negative and no shift; else the first texel whose look-ups
+/// after the first take more than all.
+fn check_albedo(section: Loaded<'_>, params: &EnvironmentParams, issues: &mut Vec<Issue>) {
+    let texels = (params.albedo_size as usize).pow(2);
+    let value = |layer: usize, texel: usize, c: usize| f16_at(section.payload, 8 * (layer * texels + texel) + 2 * c);
+    let shift_of = |layer: usize| match layer {
+        0 => Some(2),
+        1 => None,
+        _ => Some(0),
+    };
+    for layer in 0..=params.look_ups as usize {
+        for (texel, c) in (0..texels).flat_map(|texel| (0..4).map(move |c| (texel, c))) {
+            let found = value(layer, texel, c);
+            if !(found.is_finite() && (found >= 0.0 || shift_of(layer) == Some(c))) {
+                let message = format!(
+                    "component {c} of texel {texel} of layer {layer}: expected a finite number that is not negative unless a shift, \
+                     found {found}"
+                );
+                issues.push(section.error(IssueCode::EnvironmentAlbedo, message));
+                return;
+            }
+        }
+    }
+    for texel in 0..texels {
+        let shares: f32 = (2..=params.look_ups as usize).map(|layer| value(layer, texel, 2)).sum();
+        if shares > 1.0 {
+            let message =
+                format!("texel {texel}: expected shares of look-ups that add up to 1 at most, found a sum of {shares}");
+            issues.push(section.error(IssueCode::EnvironmentAlbedo, message));
             return;
         }
     }

@@ -1,5 +1,5 @@
 //! Typed sections of a prefiltered environment: parameters, radiance, indicators of radiance levels, their colours, and
-//! the two view-dependent areas that scale them.
+//! what depends on view angle and roughness alone: albedo and look-ups.
 //!
 //! Method: Kneiphof and Klein 2025, sections 3.4 and 5; what we store differs from the paper as
 //! `docs/methods/environment.md` says.
@@ -29,10 +29,15 @@ pub const INDICATORS: FourCc = FourCc(*b"ENIN");
 /// Mean colour of levels 1, 2, … under the filter, each of luminance 1: cube array texture with the mips of [`RADIANCE`], layer l is
 /// level l + 1. Of the roughnesses of a face size it has one, that of layer [`EnvironmentParams::colour_layer`].
 pub const COLOURS: FourCc = FourCc(*b"ENCO");
-/// Directional albedo and visible reflecting area: texture of [`ALBEDO_VK_FORMAT`], `albedo_size` texels square.
+/// Directional albedo and look-ups by view angle and roughness: array texture of [`ALBEDO_VK_FORMAT`], `albedo_size` texels square,
+/// one layer more than [`EnvironmentParams::look_ups`].
 ///
-/// Column i is cos θ_o = (i + ½) / size, row j is roughness α = ((j + ½) / size)². R and G: albedo is F₀ R + G under
-/// Schlick's Fresnel factor. B: visible reflecting area E_D. A: whole facet area D_H.
+/// Column i is cos θ_o = (i + ½) / size, row j is roughness α = ((j + ½) / size)². With the mirror direction m and the normal n, a look-up
+/// of shift κ and ratio r is in the direction m + κ α (n − cos θ_o m), at roughness r α.
+/// - Layer 0: albedo is E_ρ = F₀ R + G under Schlick's Fresnel factor; κ and r of the first look-up are B and A.
+/// - Layer 1: mean square ⟨ρ²⟩ of what a facet adds under even light over (E_ρ)²: R x² + 2 G x (1 − x) + B (1 − x)², x = F₀ R₀ / E_ρ with
+///   R₀ of layer 0. A: share E_D / D_H of facets that reflect to above the horizon.
+/// - Layer 1 + i, look-up i from 1 on: κ, r, its share of what is read, 0. The first has what they leave of 1.
 pub const ALBEDO: FourCc = FourCc(*b"ENAL");
 
 /// The kinds of sections of this method.
@@ -52,7 +57,7 @@ pub const BINDINGS: &[Binding] = &[
     Binding::Texture(RADIANCE, View::FloatCubeArray),
     Binding::Texture(INDICATORS, View::FloatCubeArray),
     Binding::Texture(COLOURS, View::FloatCubeArray),
-    Binding::Texture(ALBEDO, View::Float2d),
+    Binding::Texture(ALBEDO, View::Float2dArray),
     Binding::ClampSampler,
 ];
 /// VkFormat of radiance and indicators: R16G16B16A16_SFLOAT.
@@ -63,6 +68,8 @@ pub const ALBEDO_VK_FORMAT: u32 = vk_format::R16G16B16A16_SFLOAT;
 pub const COLOURS_VK_FORMAT: u32 = vk_format::E5B9G9R9_UFLOAT_PACK32;
 /// Roughness below which a lobe is no wider than some texels: errors of what is read there are kept apart.
 pub const SHARP: f64 = 0.04;
+/// Most look-ups of a surface.
+pub const MAX_LOOK_UPS: usize = 3;
 /// Most radiance levels.
 pub const MAX_LEVELS: usize = 16;
 /// Largest edge of a face: what every WebGPU device offers.
@@ -187,6 +194,8 @@ pub struct EnvironmentParams {
     pub coloured: bool,
     /// Edge of the albedo table.
     pub albedo_size: u32,
+    /// Look-ups of a surface, 1 to [`MAX_LOOK_UPS`].
+    pub look_ups: u32,
     /// Width of the source image.
     pub source_width: u32,
     /// Height of the source image.
@@ -227,6 +236,10 @@ pub struct EnvironmentUniform {
     pub inverse_log: f32,
     /// q of [`roughness_of`].
     pub bend: f32,
+    /// Look-ups of a surface, 1 to [`MAX_LOOK_UPS`].
+    pub look_ups: u32,
+    /// Zeros, so that the record is a whole number of vectors.
+    pub unused: [u32; 3],
 }
 
 impl EnvironmentParams {
@@ -242,6 +255,7 @@ impl EnvironmentParams {
             first_alpha: first as f32,
             inverse_log: if first < 1.0 { (1.0 / libm::log2(first)) as f32 } else { 0.0 },
             bend: BEND as f32,
+            look_ups: self.look_ups,
             ..EnvironmentUniform::default()
         };
         for (k, level) in self.levels.iter().take(MAX_LEVELS).enumerate() {
@@ -309,8 +323,8 @@ impl EnvironmentParams {
 
     /// Descriptor of the albedo table.
     pub fn albedo_resource(&self) -> Resource {
-        let size = self.albedo_size;
-        Resource::Texture { vk_format: ALBEDO_VK_FORMAT, width: size, height: size, layers: 1, faces: 1, mips: 1 }
+        let (size, layers) = (self.albedo_size, self.look_ups + 1);
+        Resource::Texture { vk_format: ALBEDO_VK_FORMAT, width: size, height: size, layers, faces: 1, mips: 1 }
     }
 
     fn filtered_resource(&self, vk_format: u32, layers: u32) -> Resource {

@@ -39,7 +39,7 @@ pub fn cases() -> Vec<Case> {
 
 #[test]
 fn every_way_an_environment_can_be_wrong_is_found() {
-    let edits: [fn(&mut EnvironmentParams); 20] = [
+    let edits: [fn(&mut EnvironmentParams); 22] = [
         |params| params.face_size = 0,
         |params| params.face_size = 3,
         |params| params.face_size = 1 << 31,
@@ -49,6 +49,8 @@ fn every_way_an_environment_can_be_wrong_is_found() {
         |params| params.roughness[1] = 0.0,
         |params| params.roughness[1] = f64::NAN,
         |params| params.albedo_size = 0,
+        |params| params.look_ups = 0,
+        |params| params.look_ups = 4,
         |params| params.radiance_scale = f64::INFINITY,
         |params| params.filter_error = -1.0,
         |params| params.max_error = Some(0.0),
@@ -78,9 +80,15 @@ fn every_way_an_environment_can_be_wrong_is_found() {
         assert_eq!(codes(&bytes), [IssueCode::EnvironmentIndicators], "{at} {bits:#x}");
     }
     assert_eq!(codes(&environment_with_indicators(|indicators| indicators[0] = 0x3a00)), []);
-    for at in (0..160).step_by(4) {
+    for at in (0..176).step_by(4) {
         let bytes = environment_with(environment::UNIFORM, |section| section.payload[at] ^= 1);
         assert_eq!(codes(&bytes), [IssueCode::EnvironmentUniform], "byte {at}");
+    }
+    // Layers of four texels: not a number, a negative albedo, ratio, square and share, and a share above 1. A shift may be negative.
+    let albedo = [(2, 0x7e00), (18, 0xfc00), (0, 0xbc00), (3, 0xb800), (16, 0x8400), (34, 0xb800), (34, 0x3c01)];
+    for (at, bits) in albedo.into_iter().map(|(at, bits): (usize, u16)| (2 * at, bits.to_le_bytes())) {
+        let bytes = environment_with(environment::ALBEDO, |section| section.payload[at..at + 2].copy_from_slice(&bits));
+        assert_eq!(codes(&bytes), [IssueCode::EnvironmentAlbedo], "{at} {bits:?}");
     }
     let sections = || environment_sections(&environment_params(), &environment_indicators(), 0x3c00);
     let textures = [

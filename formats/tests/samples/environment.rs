@@ -15,6 +15,7 @@ pub fn environment_params() -> EnvironmentParams {
         level_choice: environment::LevelChoice::Optimal,
         coloured: true,
         albedo_size: 2,
+        look_ups: 2,
         source_width: 8,
         source_height: 4,
         negative_pixels: 1,
@@ -37,7 +38,13 @@ pub fn environment_indicators() -> Vec<u16> {
     [0x3800, 0x3400, 0, 0].repeat(6)
 }
 
-/// The seven sections of an environment whose radiance and albedo are all `value`.
+/// Half floats of the table of [`environment_params`]: three layers of four texels, all ½ but the shifts, −1.
+pub fn environment_albedo() -> Vec<u16> {
+    let layers = [[0x3800, 0x3800, 0xbc00, 0x3800], [0x3800; 4], [0xbc00, 0x3800, 0x3800, 0]];
+    layers.into_iter().flat_map(|texel| texel.repeat(4)).collect()
+}
+
+/// The seven sections of an environment whose radiance is all `value`.
 pub fn environment_sections(params: &EnvironmentParams, indicators: &[u16], value: u16) -> Vec<Section> {
     let sound = environment_params();
     let halves = |count: usize| bytemuck::cast_slice(&vec![value; count]).to_vec();
@@ -49,6 +56,6 @@ pub fn environment_sections(params: &EnvironmentParams, indicators: &[u16], valu
         texture(environment::RADIANCE, sound.radiance_resource(), halves(24)),
         texture(environment::INDICATORS, sound.indicators_resource(), bytemuck::cast_slice(indicators).to_vec()),
         texture(environment::COLOURS, sound.colours_resource(), vec![0x80; 48]),
-        texture(environment::ALBEDO, sound.albedo_resource(), bytemuck::cast_slice(&[0x3800u16; 16]).to_vec()),
+        texture(environment::ALBEDO, sound.albedo_resource(), bytemuck::cast_slice(&environment_albedo()).to_vec()),
     ]
 }

@@ -18,7 +18,7 @@ Examples:
 /// Bake an HDR environment for image-based lighting of glints
 ///
 /// Radiance and the share of a few radiance levels, filtered with GGX at several roughnesses of each face size, to an error bound;
-/// and the two areas that depend on view angle and roughness only.
+/// and albedo and look-ups, which depend on view angle and roughness only.
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
@@ -42,6 +42,11 @@ pub struct Args {
     /// More of them interpolate better between roughnesses.
     #[arg(long, value_name = "N", default_value = "4", allow_negative_numbers = true, help_heading = "Bake")]
     pub roughnesses: u32,
+    /// Look-ups that stand for the lobe of a surface seen at an angle, 1 to 3
+    ///
+    /// A shader fetches radiance and levels once for each. One costs no fetch more than the mirror direction; three are nearer to the lobe.
+    #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true, help_heading = "Bake")]
+    pub look_ups: u32,
     /// Radiance levels, 1 to 16, or auto: the fewest that meet --max-moment-error
     ///
     /// With 1, lit facets reflect the mean.
@@ -144,6 +149,7 @@ impl Args {
             face_size: self.face_size,
             min_face_size: self.min_face_size(),
             per_size: self.roughnesses,
+            look_ups: self.look_ups,
             levels: match self.levels {
                 0 => LevelCount::Fewest(self.max_moment_error),
                 count => LevelCount::Exactly(count),
@@ -181,6 +187,7 @@ impl Args {
         options.push("face-size", self.face_size);
         options.push("min-face-size", self.min_face_size());
         options.push("roughnesses", self.roughnesses);
+        options.push("look-ups", self.look_ups);
         match self.levels {
             0 => options.push("levels", LEVELS_AUTO),
             count => options.push("levels", count),

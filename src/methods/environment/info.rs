@@ -92,6 +92,7 @@ impl Item for EnvironmentInfo {
         let _ =
             writeln!(out, "  storage      f16, radiance over {}, {}", params.radiance_scale, kib(self.texture_bytes));
         let _ = writeln!(out, "  energy       {:.1e} from that of the source", measured.energy);
+        let _ = writeln!(out, "  look-ups     {} for a surface seen at an angle", params.look_ups);
         let levels: Vec<String> = params.levels.iter().map(|level| format!("{level:.5}")).collect();
         let colours = if params.coloured { ", with colours" } else { "" };
         let _ = writeln!(out, "  levels       {}{colours}: {}", kebab(&params.level_choice), levels.join(" "));

@@ -27,11 +27,12 @@ const LEVELS: [&str; MAX_LEVELS] = [
     "ENVIRONMENT_LEVEL_15",
 ];
 
-/// Pipeline constants that follow from the parameters: what levels there are, so that programs load nothing of them.
+/// Pipeline constants that follow from the parameters: what levels and look-ups there are, so that programs load nothing of them.
 pub fn constants(params: &EnvironmentParams) -> Vec<(&'static str, f64)> {
     let mut constants = vec![
         ("ENVIRONMENT_LEVELS", params.levels.len() as f64),
         ("ENVIRONMENT_COLOURED", f64::from(u8::from(params.coloured))),
+        ("ENVIRONMENT_LOOK_UPS", f64::from(params.look_ups)),
     ];
     constants.extend(LEVELS.into_iter().zip(params.levels.iter().copied()));
     constants
@@ -48,10 +49,11 @@ pub fn empty(gpu: &Gpu) -> Result<Resources, GpuError> {
         roughnesses: 1.0,
         per_size: 1.0,
         first_alpha: 1.0,
+        look_ups: 1,
         ..EnvironmentUniform::default()
     };
-    let one = Resource::Texture { vk_format: ALBEDO_VK_FORMAT, width: 1, height: 1, layers: 1, faces: 1, mips: 1 };
-    let albedo = bytemuck::cast_slice(&[f16::ONE.to_bits(); 4]).to_vec();
+    let one = Resource::Texture { vk_format: ALBEDO_VK_FORMAT, width: 1, height: 1, layers: 2, faces: 1, mips: 1 };
+    let albedo = bytemuck::cast_slice(&[f16::ONE.to_bits(); 8]).to_vec();
     let sections = [Section::buffer(UNIFORM, "", &[uniform]), Section::texture(ALBEDO, "", one, albedo)];
     bind_sections(gpu, &sections, BINDINGS, Wrap::Clamp)
 }

@@ -13,8 +13,8 @@
 @group(2) @binding(3) var environment_indicators: texture_cube_array<f32>;
 // Section ENCO: RGB9E5Ufloat, a level a layer; one black texel without colours.
 @group(2) @binding(4) var environment_colours: texture_cube_array<f32>;
-// Section ENAL: RGBA16Float.
-@group(2) @binding(5) var environment_albedo: texture_2d<f32>;
+// Section ENAL: RGBA16Float, a layer for albedo and the first look-up, one for their squares, one for each other look-up.
+@group(2) @binding(5) var environment_albedo: texture_2d_array<f32>;
 // Filters between texels and mips, clamps.
 @group(2) @binding(6) var environment_sampler: sampler;
 
@@ -39,7 +39,7 @@ fn glint_environment_colour_at(layer: u32, direction: vec3f, mip: f32) -> vec3f 
     return textureSampleLevel(environment_colours, environment_sampler, direction, layer, mip).rgb;
 }
 
-fn glint_environment_albedo_at(place: vec2f) -> vec4f {
+fn glint_environment_albedo_at(layer: u32, place: vec2f) -> vec4f {
     bound_loads += 1u;
-    return textureSampleLevel(environment_albedo, environment_sampler, place, 0.0);
+    return textureSampleLevel(environment_albedo, environment_sampler, place, layer, 0.0);
 }

@@ -11,7 +11,7 @@
 @group(2) @binding(2) var environment_radiance: texture_2d_array<f32>;
 @group(2) @binding(3) var environment_indicators: texture_2d_array<f32>;
 @group(2) @binding(4) var environment_colours: texture_2d_array<f32>;
-@group(2) @binding(5) var environment_albedo: texture_2d<f32>;
+@group(2) @binding(5) var environment_albedo: texture_2d_array<f32>;
 
 // Column, row, face.
 struct EnvironmentCubeTaps {
@@ -132,15 +132,15 @@ fn glint_environment_colour_at(layer: u32, direction: vec3f, mip: f32) -> vec3f 
     return (1.0 - share) * low + share * high;
 }
 
-fn glint_environment_albedo_at(place: vec2f) -> vec4f {
+fn glint_environment_albedo_at(layer: u32, place: vec2f) -> vec4f {
     let last = vec2f(textureDimensions(environment_albedo)) - 1.0;
     let p = clamp(place * (last + 1.0) - 0.5, vec2f(0.0), last);
     let base = floor(p);
     let f = p - base;
     let a = vec2u(base);
     let b = vec2u(min(base + 1.0, last));
-    return (1.0 - f.x) * (1.0 - f.y) * textureLoad(environment_albedo, a, 0)
-        + f.x * (1.0 - f.y) * textureLoad(environment_albedo, vec2u(b.x, a.y), 0)
-        + (1.0 - f.x) * f.y * textureLoad(environment_albedo, vec2u(a.x, b.y), 0)
-        + f.x * f.y * textureLoad(environment_albedo, b, 0);
+    return (1.0 - f.x) * (1.0 - f.y) * textureLoad(environment_albedo, a, layer, 0)
+        + f.x * (1.0 - f.y) * textureLoad(environment_albedo, vec2u(b.x, a.y), layer, 0)
+        + (1.0 - f.x) * f.y * textureLoad(environment_albedo, vec2u(a.x, b.y), layer, 0)
+        + f.x * f.y * textureLoad(environment_albedo, b, layer, 0);
 }

@@ -5,10 +5,11 @@
 #import shade_smooth_brdf
 #import environment::query
 
-// Number of radiance levels of the pack, whether they have colours, and their radiances: what is known when a pipeline is made costs
+// Number of radiance levels of the pack, whether they have colours, look-ups of a surface, and radiances of levels: what is known when a pipeline is made costs
 // neither loads nor branches, which some devices take both ways. No levels: all are read from the environment.
 override ENVIRONMENT_LEVELS: u32 = 0u;
 override ENVIRONMENT_COLOURED: u32 = 0u;
+override ENVIRONMENT_LOOK_UPS: u32 = 1u;
 override ENVIRONMENT_LEVEL_0: f32 = 0.0;
 override ENVIRONMENT_LEVEL_1: f32 = 0.0;
 override ENVIRONMENT_LEVEL_2: f32 = 0.0;
@@ -37,6 +38,7 @@ fn shade_environment_data() -> GlintEnvironment {
     if ENVIRONMENT_LEVELS != 0u {
         data.levels = ENVIRONMENT_LEVELS;
         data.coloured = ENVIRONMENT_COLOURED;
+        data.look_ups = ENVIRONMENT_LOOK_UPS;
         data.level = GlintLevels(
             vec4f(ENVIRONMENT_LEVEL_0, ENVIRONMENT_LEVEL_1, ENVIRONMENT_LEVEL_2, ENVIRONMENT_LEVEL_3),
             vec4f(ENVIRONMENT_LEVEL_4, ENVIRONMENT_LEVEL_5, ENVIRONMENT_LEVEL_6, ENVIRONMENT_LEVEL_7),

@@ -35,7 +35,7 @@ const EXACT_BINDINGS: &[Binding] = &[
     Binding::Texture(RADIANCE, View::Float2dArray),
     Binding::Texture(INDICATORS, View::Float2dArray),
     Binding::Texture(COLOURS, View::Float2dArray),
-    Binding::Texture(ALBEDO, View::Float2d),
+    Binding::Texture(ALBEDO, View::Float2dArray),
 ];
 
 /// How shaders look directions up.
@@ -104,14 +104,22 @@ fn image(bright: f32) -> EnvironmentImage {
 }
 
 fn baked(image: &EnvironmentImage, face_size: u32, levels: u32, coloured: bool) -> Environment {
-    baked_to(1, image, face_size, levels, coloured)
+    baked_to(1, image, face_size, levels, coloured, 1)
 }
 
-fn baked_to(min_face_size: u32, image: &EnvironmentImage, face_size: u32, levels: u32, coloured: bool) -> Environment {
+fn baked_to(
+    min_face_size: u32,
+    image: &EnvironmentImage,
+    face_size: u32,
+    levels: u32,
+    coloured: bool,
+    look_ups: u32,
+) -> Environment {
     let options = EnvironmentOptions {
         face_size,
         min_face_size,
         per_size: 2,
+        look_ups,
         levels: LevelCount::Exactly(levels),
         coloured,
         measured_reads: 0,
@@ -240,17 +248,17 @@ fn glints_of_the_shader_are_those_of_the_cpu() {
     let rng = &mut random(31);
     let mut pairs = Pairs::default();
     let mut count = 0;
-    for (levels, coloured, face_size) in [
-        (1, false, 16),
-        (2, true, 8),
-        (3, false, 16),
-        (4, false, 32),
-        (5, true, 8),
-        (8, false, 16),
-        (11, true, 8),
-        (16, false, 16),
+    for (levels, coloured, face_size, look_ups) in [
+        (1, false, 16, 3),
+        (2, true, 8, 1),
+        (3, false, 16, 2),
+        (4, false, 32, 1),
+        (5, true, 8, 3),
+        (8, false, 16, 2),
+        (11, true, 8, 1),
+        (16, false, 16, 3),
     ] {
-        let environment = baked(&image(30.0), face_size, levels, coloured);
+        let environment = baked_to(1, &image(30.0), face_size, levels, coloured, look_ups);
         let queries: Vec<Query> = (0..QUERIES / 4).map(|_| query(rng)).collect();
         hold(&environment, &queries, &ask(gpu, &environment, LookUp::Exact, &queries), &mut pairs);
         count += queries.len();
@@ -266,7 +274,7 @@ fn a_real_environment_agrees_too() {
     let pixels = pixels.into_rgb32f();
     let (width, height) = pixels.dimensions();
     let image = EnvironmentImage::new(width, height, pixels.pixels().map(|pixel| pixel.0).collect()).unwrap();
-    let environment = baked(&image, 32, 8, false);
+    let environment = baked_to(1, &image, 32, 8, false, 3);
     let rng = &mut random(32);
     let queries: Vec<Query> = (0..QUERIES).map(|_| query(rng)).collect();
     let mut pairs = Pairs::default();
@@ -279,7 +287,7 @@ fn a_real_environment_agrees_too() {
 #[test]
 fn a_sampler_reads_what_is_read_texel_by_texel() {
     let Some(gpu) = gpu() else { return };
-    let environment = baked_to(8, &image(30.0), 64, 8, false);
+    let environment = baked_to(8, &image(30.0), 64, 8, false, 3);
     let rng = &mut random(33);
     let queries: Vec<Query> = (0..QUERIES).map(|_| query(rng)).collect();
     let exact = ask(gpu, &environment, LookUp::Exact, &queries);
@@ -317,7 +325,8 @@ fn the_uniform_lies_as_the_shader_reads_it() {
         per_size,
         first_alpha,
         inverse_log,
-        bend
+        bend,
+        look_ups
     );
 }
 
@@ -326,8 +335,8 @@ fn the_uniform_lies_as_the_shader_reads_it() {
 fn the_mean_of_1024_seeds_is_the_smooth_reflection() {
     const SEEDS: u32 = 1024;
     let Some(gpu) = gpu() else { return };
-    for (levels, coloured) in [(1, false), (4, false), (8, false), (4, true)] {
-        let environment = baked(&image(3.0), 16, levels, coloured);
+    for (levels, coloured, look_ups) in [(1, false, 1), (4, false, 3), (8, false, 1), (4, true, 2)] {
+        let environment = baked_to(1, &image(3.0), 16, levels, coloured, look_ups);
         let rng = &mut random(35);
         // Points enough that the mean is known to a third of a per cent.
         let lots = [(2.5, 192), (30.0, 64), (3000.0, 16)];
