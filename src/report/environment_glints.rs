@@ -66,9 +66,8 @@ pub fn measure(settings: &Settings) -> Result<Document, Failure> {
     document.heading(2, "Variance of glint radiance");
     document.paragraph(
         "*ours*: optimal levels, and the second moment that is filtered besides radiance; *levels alone*: without it; *paper*: \
-         log-uniform levels. Seen along the normal, a filtered map is the reflection up to F. At an angle it is that of the \
-         mirror direction, which is round where a reflection is longer than wide and does not end at the surface's own \
-         horizon: that is the method's own limit, whatever the levels.",
+         log-uniform levels. Seen along the normal, a filtered map is the reflection up to F. At an angle one round look-up stands \
+         for a lobe that is longer than wide and ends at the surface's own horizon: that decides the error there, whatever the levels.",
     );
     let mut panels = Vec::new();
     for max_degrees in [0.0, MAX_DEGREES] {
