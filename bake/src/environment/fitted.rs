@@ -8,7 +8,7 @@
 //! - the target is the mean of ρ̃ and, for the glints' variance, of what facets add in the square, in shares of [`OF_SQUARE`];
 //! - differences count over the mean of the target around the mirror direction plus [`FLOOR`], by their squares: under a sun besides an
 //!   even sky every pixel counts by its relative error, those far from the highlight as much as those within;
-//! - Levenberg–Marquardt, begun at the fit of the next angle and roughness, which it is also drawn to a little, so that look-ups go
+//! - Levenberg–Marquardt, begun at the fits of the angle and the roughness beside, which it is also drawn to a little, so that look-ups go
 //!   smoothly over the table and none changes its place with another.
 //!
 //! Targets and kernels are summed over rings around the mirror direction, even in ln(1 + t b/a), which both follow.
@@ -40,10 +40,18 @@ const LEAST_ROOT: f64 = 0.1;
 const LEAST_COSINE: f64 = 0.04;
 /// Weight of the squared difference to the fits beside.
 const DRAWN: f64 = 1e-4;
-/// Most steps of a fit, the first of them a little shorter than Gauss and Newton's, and the change of its sum that ends it.
+/// Most steps of a fit.
 const STEPS: usize = 40;
+/// What the first step adds to the diagonal of its equations, over it.
 const DAMPING: f64 = 0.01;
+/// Change of the sum of squares, over it, that ends a fit.
 const ENOUGH: f64 = 1e-6;
+/// Difference of a parameter that slopes are taken over.
+const SLOPE_STEP: f64 = 1e-5;
+/// Longest step of a parameter.
+const LONGEST: f64 = 0.3;
+/// Most shortenings of a step.
+const SHORTENINGS: usize = 8;
 /// Least logarithm of a ratio of roughnesses; the largest is that of a roughness of 1.
 const LEAST_RATIO: f64 = -2.3;
 /// Parameters of a fit: shifts, logarithms of ratios, logarithms of shares over that of the first.
@@ -153,7 +161,7 @@ fn fitted_of(count: usize, x: &[f64; PARAMETERS]) -> Fitted {
     std::array::from_fn(|i| if i < count { look_up(i) } else { FittedLookUp::default() })
 }
 
-/// What fits begin with, seen along the normal: the middle, then one towards the normal, which is also the wide one, then one towards the
+/// What the first fit begins with: the middle, then one towards the normal, which is also the wide one, then one towards the
 /// horizon.
 fn first_of(count: usize) -> [f64; PARAMETERS] {
     let (shifts, ratios) = match count {
@@ -198,13 +206,6 @@ fn fit(target: &Target, count: usize, prior: &[f64; PARAMETERS]) -> [f64; PARAME
     }
     x
 }
-
-/// Difference of a parameter that slopes are taken over.
-const SLOPE_STEP: f64 = 1e-5;
-/// Longest step of a parameter.
-const LONGEST: f64 = 0.3;
-/// Most shortenings of a step.
-const SHORTENINGS: usize = 8;
 
 /// A step that makes the sum of squares less, shortened until it does; none where none does.
 fn step(
@@ -269,7 +270,7 @@ fn arguments(column: f64, row: f64) -> (f64, f64) {
 /// Fits of `count` look-ups, 1 to [`MAX_LOOK_UPS`], of a kernel's maps.
 pub struct Fits {
     count: usize,
-    /// Row by row, the least roughness first, each from cos θ = 0 on.
+    /// Row by row, the least roughness first, each from the least cosine on.
     fits: Vec<[f64; PARAMETERS]>,
 }
 
