@@ -336,7 +336,7 @@ mod tests {
             for (row, column) in (0..ROWS - 1).flat_map(|row| (0..COLUMNS - 1).map(move |column| (row, column))) {
                 let (cosine, alpha) = arguments(column as f64 + 0.5, row as f64 + 0.5);
                 let target = Target::new(Kernel::GgxSoft, cosine, alpha);
-                let of = |count: usize, x| square(&target.differences(count, x)).sqrt();
+                let of = |count: usize, x: &[f64; PARAMETERS]| square(&target.differences(count, x)).sqrt();
                 let between = fits.between(cosine, alpha);
                 let mirror = of(1, &[0.0; PARAMETERS]);
                 let [found, best] = [between, fit(&target, count, &between)].map(|x| of(count, &x) / mirror);
