@@ -34,6 +34,8 @@ mod folder;
 mod foreign;
 #[path = "cli/generate.rs"]
 mod generate;
+#[path = "cli/glints.rs"]
+mod glints;
 #[path = "cli/gltf_file.rs"]
 mod gltf_file;
 #[path = "cli/info.rs"]

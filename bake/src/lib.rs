@@ -7,6 +7,7 @@ pub mod footprint;
 pub mod ggx;
 pub mod hash;
 mod methods;
+pub mod microfacet;
 pub mod moments;
 pub mod normal_map;
 mod pack_access;

@@ -10,6 +10,8 @@ pub mod counting;
 pub mod dictionary;
 #[path = "environment/mod.rs"]
 pub mod environment;
+#[path = "glints/mod.rs"]
+pub mod glints;
 #[path = "lobes/mod.rs"]
 pub mod lobes;
 #[path = "ndf_maps/mod.rs"]
@@ -27,6 +29,7 @@ pub(crate) const SHADERS: &[&[Shader]] = &[
     crate::area_light::SHADERS,
     crate::counting::SHADERS,
     crate::environment::SHADERS,
+    crate::glints::SHADERS,
     crate::ndf_maps::SHADERS,
     crate::lobes::SHADERS,
     crate::synthesis::SHADERS,

@@ -12,6 +12,7 @@ const GROUND: &[Shader] = &[
     Shader { name: "erf", source: include_str!("erf.wgsl") },
     Shader { name: "footprint", source: include_str!("footprint.wgsl") },
     Shader { name: "ggx", source: include_str!("ggx.wgsl") },
+    Shader { name: "microfacet", source: include_str!("microfacet.wgsl") },
     Shader { name: "moments", source: include_str!("moments.wgsl") },
     Shader { name: "hash", source: include_str!("hash.wgsl") },
 ];

@@ -44,6 +44,10 @@ PARAMETERS = {
     "SDPP": dict(
         marginals="u32", levels="u32", entries="u32", alpha_dict="f64", lobe_std="f64", domain="f64", seed="u64",
         measured=dict(normalisation="f64", mean_l1_first_level="f64", ks_last_level="f64")),
+    "GLPP": dict(
+        slopes=("enum", ["Beckmann", "Ggx"]), alpha=PAIR, turn="f32", f0=("array", 3, "f32"), density="f32",
+        relative_area="f32", facet_area="f32", facet_spread="f32", sky_spread="f32", seed="u32",
+        colours=("list", ("array", 3, "f32")), table_mean_error="f64"),
     "ENPP": dict(
         face_size="u32", per_size="u32", kernel=("enum", ["Ndf", "GgxNl", "GgxSoft"]),
         roughness=("list", "f64"), radiance_scale="f64", levels=("list", "f64"),
@@ -68,7 +72,7 @@ PARAMETERS = {
         measured=dict(seam_ratio="f64", distinct_offsets="u32")),
 }
 KINDS = set(PARAMETERS) | set(
-    "NMUB NMND NMDE NMNO PLNO PLCL LAUB SDUB SDTB ENUB ENMI ENRA ENIN ENCO ENAL ALUB ALNM ALRO ALLI ALLT LOUB LOBE LONM SYPO "
+    "NMUB NMND NMDE NMNO PLNO PLCL LAUB SDUB SDTB GLUB GLCO GLLI GLLT ENUB ENMI ENRA ENIN ENCO ENAL ALUB ALNM ALRO ALLI ALLT LOUB LOBE LONM SYPO "
     "SYSE".split())
 TEXEL_BYTES = {9: 1, 10: 1, 13: 1, 16: 2, 17: 2, 37: 4, 38: 4, 41: 4, 70: 2, 71: 2, 74: 2, 76: 2, 77: 4, 78: 4, 81: 4,
                83: 4, 91: 8, 92: 8, 95: 8, 97: 8, 98: 4, 100: 4, 101: 8, 103: 8, 107: 16, 109: 16, 122: 4, 123: 4}

@@ -120,6 +120,10 @@ issue_codes! {
     SynthesisPadding = 3065, "synthesis buffer does not end with zeros";
     NdfUniform = 3070, "NDF map uniform differs from parameters";
     LayerUniform = 3071, "layered material uniform differs from parameters";
+    GlintsParameters = 3080, "counted facets parameter out of range";
+    GlintsShape = 3081, "counted facets buffer differs from parameters";
+    GlintsUniform = 3082, "counted facets uniforms differ from parameters";
+    GlintsColours = 3083, "counted facets colours differ from parameters";
 }
 
 impl fmt::Display for IssueCode {

@@ -11,6 +11,8 @@ pub mod area_light;
 pub mod dictionary;
 #[path = "environment/mod.rs"]
 pub mod environment;
+#[path = "glints/mod.rs"]
+pub mod glints;
 #[path = "lobes/mod.rs"]
 pub mod lobes;
 #[path = "ndf_maps/mod.rs"]
@@ -27,6 +29,7 @@ pub(crate) const KINDS: &[&[KnownKind]] = &[
     crate::dictionary::KINDS,
     crate::environment::KINDS,
     crate::area_light::KINDS,
+    crate::glints::KINDS,
     crate::lobes::KINDS,
     crate::synthesis::KINDS,
 ];
@@ -41,6 +44,7 @@ pub(crate) const CHECKS: &[Check] = &[
     crate::dictionary::check::check,
     crate::environment::check::check,
     crate::area_light::check::check,
+    crate::glints::check::check,
     crate::lobes::check::check,
     crate::synthesis::check::check,
 ];

@@ -23,7 +23,7 @@ fn sections_come_back() {
     let pack = open(full_pack());
     assert_eq!(pack.version(), (1, 0));
     assert_eq!(pack.file_len(), full_pack().len() as u64);
-    assert_eq!(pack.names(), [ROCK, "coated rock", "lobes", "sky", "metal", "hide", "gold"]);
+    assert_eq!(pack.names(), [ROCK, "coated rock", "lobes", "sky", "metal", "flakes", "hide", "gold"]);
     let read = |kind, name: &str| pack.payload(pack.find(kind, name).unwrap()).unwrap();
     assert_eq!(params::decode::<Provenance>(&read(PROVENANCE, "")).unwrap(), provenance());
     assert_eq!(params::decode::<NdfMapsParams>(&read(PARAMS, ROCK)).unwrap(), ndf_params());

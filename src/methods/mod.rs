@@ -8,6 +8,7 @@ pub mod bake;
 pub mod contents;
 mod dictionary;
 mod environment;
+mod glints;
 mod lobes;
 pub mod method;
 pub mod ndf_maps;
@@ -23,8 +24,14 @@ use method::Method;
 use std::sync::Arc;
 
 /// Every method, in the order that help and reports have.
-pub static ALL: &[&dyn Method] =
-    &[&ndf_maps::NdfMaps, &dictionary::Dictionary, &environment::Environment, &area_light::AreaLight, &lobes::Lobes];
+pub static ALL: &[&dyn Method] = &[
+    &ndf_maps::NdfMaps,
+    &dictionary::Dictionary,
+    &glints::Glints,
+    &environment::Environment,
+    &area_light::AreaLight,
+    &lobes::Lobes,
+];
 
 /// The method of a name.
 pub fn find(name: &str) -> Option<&'static dyn Method> {

@@ -169,7 +169,7 @@ mod with_viewer {
         let view = ViewSettings::new(&subjects.shown, Orbit::fit(Mesh::plane(2.0).bounds()));
         let mut rows = Vec::new();
         for index in 0..subjects.shown.len() {
-            for setup in Setup::of(&subjects.shown, index, &view, bench) {
+            for setup in Setup::of(&subjects.shown, index, &view, bench, subjects.environment.is_some()) {
                 rows.push(measure_setup(gpu, &subjects, &setup, bench)?);
             }
         }

@@ -41,8 +41,8 @@ const FIELD_OF_VIEW: f32 = 0.610_865_24;
 /// A picture that a wall fills, in the light that a method is made for.
 #[derive(Clone, Debug)]
 pub struct Setup {
-    /// How the wall is seen.
-    pub name: &'static str,
+    /// How the wall is seen, and by which lights where the method is made for several.
+    pub name: String,
     /// The wall.
     pub mesh: Mesh,
     /// The view that is timed, of the method.
@@ -50,52 +50,111 @@ pub struct Setup {
     /// The same in fewer pixels with the same footprints.
     pub small: View,
     /// What the method is compared with.
-    pub baseline: Subject,
+    pub baseline: Side,
 }
 
 impl Setup {
-    /// The setups of entry `index` of `list`, with the lights and materials of `settings`: the wall from straight ahead, where
-    /// footprints are round and equal, and from 60° to the side, where they are long. None for what is a baseline itself.
-    pub fn of(list: &[Subject], index: usize, settings: &Settings, bench: BenchSettings) -> Vec<Setup> {
+    /// The setups of entry `index` of `list`, with the materials of `settings`, in every lighting that the method is made for: the
+    /// wall from straight ahead, where footprints are round and equal, and from 60° to the side, where they are long. None for what is a
+    /// baseline itself. Lightings need an environment only where `has_environment`.
+    pub fn of(
+        list: &[Subject],
+        index: usize,
+        settings: &Settings,
+        bench: BenchSettings,
+        has_environment: bool,
+    ) -> Vec<Setup> {
         let shown = &list[index];
         let Some(base) = baseline_of(list, index).map(|base| &list[base]) else { return Vec::new() };
         let mut settings = settings.clone();
         settings.shown = index;
         settings.against = Against::Nothing;
-        settings.lights.only(&[shown.method.usual_light()]);
         settings.lights.room_on = false;
-        let material = settings.materials[index];
+        let places = [("ahead", Vec3::new(0.0, 0.0, 1.0)), ("60 degrees", Vec3::new(0.0, -0.866_025_4, 0.5))];
+        let mut setups = Vec::new();
+        for lighting in lightings(shown.method, has_environment) {
+            settings.lights.only(lighting.kinds);
+            let point = settings.lights.points[0];
+            settings.lights.points.resize(lighting.points.max(1), point);
+            // A rectangle on a smooth surface is its own closed form; the smooth BRDF would take it for sixteen points.
+            let own = lighting.kinds.contains(&LightKind::Rect) && shown.method == Method::Glints;
+            let of_base = Subject { material: settings.materials[index], ..base.clone() };
+            let baseline = Side { shown: if own { shown.clone() } else { of_base }, reference: own };
+            for (place, direction) in places {
+                let name = format!("{place}{}", lighting.name);
+                setups.push(Setup::seen(list, index, &settings, bench, name, direction, baseline.clone()));
+            }
+        }
+        setups
+    }
+
+    fn seen(
+        list: &[Subject],
+        index: usize,
+        settings: &Settings,
+        bench: BenchSettings,
+        name: String,
+        direction: Vec3,
+        baseline: Side,
+    ) -> Setup {
+        let (shown, material) = (&list[index], settings.materials[index]);
         let units_per_pixel =
             if shown.method.has_map() { TEXELS_PER_PIXEL / material.texels_per_unit } else { UNITS_PER_PIXEL };
         let distance = 0.5 / (0.5 * FIELD_OF_VIEW).tan();
-        let places = [("ahead", Vec3::new(0.0, 0.0, 1.0)), ("60 degrees", Vec3::new(0.0, -0.866_025_4, 0.5))];
-        places
-            .map(|(name, direction)| {
-                let mut settings = settings.clone();
-                // The mirror image of the camera, so that the highlight is in the picture.
-                settings.lights.sun.direction = direction * Vec3::new(1.0, -1.0, 1.0) + Vec3::new(0.1, 0.1, 0.0);
-                let mirrored = direction * Vec3::new(1.0, -1.0, 1.0);
-                settings.lights.rect = rect_facing(Vec3::ZERO, mirrored * 1.5, 0.5, 0.35);
-                let position = direction * distance;
-                let mut view = |size: [u32; 2]| {
-                    // One unit of uv is the whole wall; the picture shows a height of 1 of it.
-                    settings.uv_scale = WALL * units_per_pixel * size[1] as f32;
-                    let mut view = settings.view(list, size);
-                    view.scene.camera =
-                        Camera { position, target: Vec3::ZERO, field_of_view: FIELD_OF_VIEW, near: 0.01 };
-                    view
-                };
-                let (view, small) = (view(bench.size), view(bench.error_size));
-                Setup {
-                    name,
-                    mesh: Mesh::wall(WALL, WALL),
-                    view,
-                    small,
-                    baseline: Subject { material, ..base.clone() },
-                }
-            })
-            .into()
+        let mut settings = settings.clone();
+        // The mirror image of the camera, so that the highlight is in the picture.
+        let mirrored = direction * Vec3::new(1.0, -1.0, 1.0);
+        settings.lights.sun.direction = mirrored + Vec3::new(0.1, 0.1, 0.0);
+        settings.lights.rect = rect_facing(Vec3::ZERO, mirrored * 1.5, 0.5, 0.35);
+        for (k, point) in settings.lights.points.iter_mut().enumerate() {
+            point.position = mirrored * 3.0 + Vec3::X * (0.3 * k as f32 - 0.4);
+            (point.intensity, point.radius) = (Vec3::splat(9.0), 0.02);
+        }
+        let position = direction * distance;
+        let mut view = |size: [u32; 2]| {
+            // One unit of uv is the whole wall; the picture shows a height of 1 of it.
+            settings.uv_scale = WALL * units_per_pixel * size[1] as f32;
+            let mut view = settings.view(list, size);
+            view.scene.camera = Camera { position, target: Vec3::ZERO, field_of_view: FIELD_OF_VIEW, near: 0.01 };
+            view
+        };
+        let (view, small) = (view(bench.size), view(bench.error_size));
+        Setup { name, mesh: Mesh::wall(WALL, WALL), view, small, baseline }
     }
+}
+
+/// Lights in which a method is measured.
+struct Lighting {
+    /// What its rows say of it, after where the wall is seen from.
+    name: &'static str,
+    kinds: &'static [LightKind],
+    /// Points that are on.
+    points: usize,
+}
+
+/// The light that a method is made for; of counted facets, which are made for all, what each costs and what several do.
+fn lightings(method: Method, has_environment: bool) -> Vec<Lighting> {
+    let lighting = |name, kinds, points| Lighting { name, kinds, points };
+    if method != Method::Glints {
+        let kinds: &[LightKind] = match method.usual_light() {
+            LightKind::Sun => &[LightKind::Sun],
+            LightKind::Points => &[LightKind::Points],
+            LightKind::Rect => &[LightKind::Rect],
+            LightKind::Environment => &[LightKind::Environment],
+        };
+        return vec![lighting("", kinds, 1)];
+    }
+    let mut all = vec![
+        lighting(", sun", &[LightKind::Sun], 1),
+        lighting(", sun and point", &[LightKind::Sun, LightKind::Points], 1),
+        lighting(", sun and 3 points", &[LightKind::Sun, LightKind::Points], 3),
+        lighting(", rectangle", &[LightKind::Rect], 1),
+    ];
+    if has_environment {
+        all.push(lighting(", environment", &[LightKind::Environment], 1));
+        all.push(lighting(", sun and environment", &[LightKind::Sun, LightKind::Environment], 1));
+    }
+    all
 }
 
 /// What was measured of a method.
@@ -105,8 +164,8 @@ pub struct BenchRow {
     pub method: &'static str,
     /// Material.
     pub name: String,
-    /// How the wall is seen.
-    pub view: &'static str,
+    /// How the wall is seen, and by which lights where the method is made for several.
+    pub view: String,
     /// What its time is compared with.
     pub baseline: &'static str,
     /// Median seconds of a frame's passes: the surface and its display.
@@ -151,7 +210,8 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
         vary_seed: false,
         ..view.clone()
     };
-    let views = [of(&setup.view, &setup.baseline, false), of(&setup.view, shown, false)];
+    let baseline = &setup.baseline;
+    let views = [of(&setup.view, &baseline.shown, baseline.reference), of(&setup.view, shown, false)];
     let small = |reference| of(&setup.small, shown, reference);
     let mut times = [Vec::new(), Vec::new()];
     // The first frame of each compiles its program and is not counted.
@@ -168,16 +228,16 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
         frame: median(times.iter().map(|time| time.frame).collect()),
     });
     let loads = mean_count(gpu, renderer, &small(false), Overlay::Loads)?;
-    let mut operations = |shown| mean_count(gpu, renderer, &of(&setup.small, shown, false), Overlay::Operations);
-    let (operations, baseline_operations) = (operations(shown)?, operations(&setup.baseline)?);
+    let mut operations =
+        |shown, reference| mean_count(gpu, renderer, &of(&setup.small, shown, reference), Overlay::Operations);
+    let (operations, baseline_operations) =
+        (operations(shown, false)?, operations(&baseline.shown, baseline.reference)?);
     let source = glint_shaders::program(shown.method.name(), &shown.files);
     let instructions = glint_shaders::translate::spirv_instructions(&source).map_err(GpuError::Refused)?;
     // What an environment shows is what lights the scene.
     let environment = subjects.environment.as_ref().filter(|_| shown.method == Method::Environment);
     let bytes = environment.map_or_else(|| shown.bytes(), |environment| environment.bytes);
-    // Glints under an environment have no reference but their mean over seeds.
-    let has_reference = shown.method.usual_light() != LightKind::Environment;
-    let error = if has_reference && settings.reference_samples > 0 {
+    let error = if shown.method.has_reference() && settings.reference_samples > 0 {
         Some(error_of(gpu, renderer, &small(false), &small(true), settings.reference_samples)?)
     } else {
         None
@@ -185,8 +245,8 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
     Ok(BenchRow {
         method: shown.method.name(),
         name: shown.name.clone(),
-        view: setup.name,
-        baseline: setup.baseline.method.name(),
+        view: setup.name.clone(),
+        baseline: if baseline.reference { "its smooth form" } else { baseline.shown.method.name() },
         frame: own.frame,
         frame_ratio: own.frame / base.frame,
         surface_ratio: own.surface / base.surface,

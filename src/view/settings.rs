@@ -65,11 +65,12 @@ impl LightSettings {
         };
         LightSettings {
             sun_on: true,
-            sun: Sun { direction: sun, irradiance: Vec3::splat(1.0) },
+            sun: Sun { direction: sun, irradiance: Vec3::splat(1.0), solid_angle_sr: cone_solid_angle(SUN_DEGREES) },
             points_on: false,
             points: vec![PointLight {
                 position: centre + point * radius,
                 intensity: Vec3::splat(3.0 * radius * radius),
+                radius: 0.02 * radius,
             }],
             rect_on: false,
             rect: rect_facing(centre, centre + middle * radius, 0.55 * radius, 0.35 * radius),
@@ -96,6 +97,16 @@ impl LightSettings {
             room: self.room_on && !self.environment_on,
         }
     }
+}
+
+/// Angle across the sun's disk, in degrees.
+pub const SUN_DEGREES: f32 = 0.533;
+
+/// Solid angle, in steradians, of a disk in the sky that is so many degrees across.
+pub fn cone_solid_angle(degrees: f32) -> f32 {
+    // 1 − cos x, with its digits.
+    let half_sine = (0.25 * degrees.to_radians()).sin();
+    4.0 * std::f32::consts::PI * half_sine * half_sine
 }
 
 /// A rectangle around `middle` that faces `target`, upright, of this half width and half height.

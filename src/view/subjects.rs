@@ -6,7 +6,8 @@ use crate::render::{Material, Method, Renderer, Subject};
 use crate::scene::Mesh;
 use glam::Vec3;
 use glint_bake_core::error::BakeError;
-use glint_bake_core::{area_light, dictionary, environment, lobes, ndf_maps, surface, synthesis};
+use glint_bake_core::{area_light, dictionary, environment, glints, lobes, ndf_maps, surface, synthesis};
+use glint_formats::glints::GlintsParams;
 use glint_formats::lobes::{BINDINGS, LobesParams};
 use glint_formats::ndf_maps::MaterialUniform;
 use glint_formats::{Pack, Wrap};
@@ -42,7 +43,9 @@ impl Subjects {
             subjects.add_surfaces(gpu, pack)?;
             subjects.add_environments(gpu, pack)?;
             subjects.add_area_lights(gpu, pack)?;
+            subjects.add_glints(gpu, pack)?;
         }
+        subjects.light_glints();
         subjects.add(Method::Smooth, "", &nothing(gpu), Material::default());
         Ok(subjects)
     }
@@ -158,6 +161,24 @@ impl Subjects {
         Ok(())
     }
 
+    fn add_glints(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
+        for name in glints::sections::materials(pack) {
+            let params = glints::sections::params(pack, name).map_err(bad)?;
+            let data = Rc::new(bind_pack(gpu, pack, name, glint_formats::glints::BINDINGS, Wrap::Clamp)?);
+            self.add(Method::Glints, name, &data, glints_material(&params));
+        }
+        Ok(())
+    }
+
+    /// Counted facets see the environment that lights the scene, of whichever pack.
+    fn light_glints(&mut self) {
+        let environment = self.shown.iter().find(|shown| shown.method == Method::Environment);
+        let Some(constants) = environment.map(|shown| shown.constants.clone()) else { return };
+        for shown in self.shown.iter_mut().filter(|shown| shown.method == Method::Glints) {
+            shown.constants.clone_from(&constants);
+        }
+    }
+
     fn add_area_lights(&mut self, gpu: &Gpu, pack: &Pack) -> Result<(), GpuError> {
         for name in area_light::sections::materials(pack) {
             let params = area_light::sections::params(pack, name).map_err(bad)?;
@@ -194,6 +215,23 @@ fn lobes_material(params: &LobesParams) -> Material {
     Material {
         intrinsic_roughness: params.intrinsic_roughness,
         texels_per_unit: params.width.max(params.height) as f32,
+        ..Material::default()
+    }
+}
+
+fn glints_material(params: &GlintsParams) -> Material {
+    let uniform = params.uniform();
+    Material {
+        f0: uniform.f0,
+        alpha: uniform.alpha,
+        normal_target: uniform.normal_target,
+        density: uniform.density,
+        mean_colour: uniform.mean_colour,
+        relative_area: uniform.relative_area,
+        seed: uniform.seed,
+        colours: uniform.colours,
+        facet_spread: uniform.facet_spread,
+        sky_spread: uniform.sky_spread,
         ..Material::default()
     }
 }

@@ -157,7 +157,7 @@ pub fn sky(path: &Path) {
 }
 
 /// Every kind of pack, and the flags it is baked with.
-const PACKS: [(&str, &[&str]); 11] = [
+const PACKS: [(&str, &[&str]); 12] = [
     (
         "layered.glintpack",
         &["ndf-maps", "flakes.png", "scratches.png", "--layers", "scratches:flakes", "--placement", "stochastic"],
@@ -165,6 +165,7 @@ const PACKS: [(&str, &[&str]); 11] = [
     ("tiled.glintpack", &["ndf-maps", "flakes.png", "--finest-window", "1", "--compress"]),
     ("clamped.glintpack", &["ndf-maps", "flakes.png", "--wrap", "clamp", "--crop", "2x2+0+0"]),
     ("dictionary.glintpack", &["dictionary", "--marginals", "3"]),
+    ("facets.glintpack", &["glints", "--colour", "1,0.5,0.2", "--compress"]),
     ("sky.glintpack", &["environment", "sky.hdr", "--face-size", "8", "--min-face-size", "2", "--coloured"]),
     ("levels.glintpack", &["environment", "sky.hdr", "--face-size", "4", "--levels", "7"]),
     ("ggx.glintpack", &["environment", "sky.hdr", "--face-size", "4", "--kernel", "ggx-nl", "--compress"]),

@@ -42,6 +42,15 @@ pub struct Roughness {
     pub axis: Vec2,
 }
 
+/// A light on a lobe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LobeLight {
+    /// How much of the lobe the light fills, 0 to 1.
+    pub form_factor: f32,
+    /// What the tables say of the lobe: magnitude, Fresnel term, 0, clipped form factor.
+    pub terms: Vec4,
+}
+
 /// atan2(sine, cosine) for sine ≥ 0, not both 0.
 fn angle(sine: f32, cosine: f32) -> f32 {
     sine.atan2(cosine)
@@ -148,16 +157,9 @@ fn corner_to_cosine(m: Vec4, stretch: Vec3, x: Vec3, y: Vec3, normal: Vec3, corn
     Vec3::new(stretch.x * v.x + stretch.y * v.y, stretch.y * v.x + stretch.z * v.y, v.z)
 }
 
-/// Radiance towards `view` of one lobe about the unit `normal`, with reflectance `f0` at normal incidence, for a light of
-/// radiance 1.
-pub fn lobe_radiance(
-    tables: &Tables,
-    normal: Vec3,
-    roughness: Roughness,
-    view: Vec3,
-    f0: f32,
-    light: &RectLight,
-) -> f32 {
+/// What a light and one lobe about the unit `normal` have in common, seen from `view`: how much of the lobe the light fills, and what the
+/// tables say of the lobe.
+pub fn lobe_light(tables: &Tables, normal: Vec3, roughness: Roughness, view: Vec3, light: &RectLight) -> LobeLight {
     let frame = tangent_frame(normal);
     let across = Vec2::new(frame.0.dot(view), frame.1.dot(view));
     let length = across.length();
@@ -174,7 +176,21 @@ pub fn lobe_radiance(
     let terms = tables.terms_at(place);
     let s = stretch_in_plane(lobe, along);
     let form_factor = quad_form_factor(light.corners.map(|corner| corner_to_cosine(m, s, x, y, normal, corner)));
-    form_factor * (f0 * terms.x + (1.0 - f0) * terms.y)
+    LobeLight { form_factor, terms }
+}
+
+/// Radiance towards `view` of one lobe about the unit `normal`, with reflectance `f0` at normal incidence, for a light of
+/// radiance 1.
+pub fn lobe_radiance(
+    tables: &Tables,
+    normal: Vec3,
+    roughness: Roughness,
+    view: Vec3,
+    f0: f32,
+    light: &RectLight,
+) -> f32 {
+    let lobe = lobe_light(tables, normal, roughness, view, light);
+    lobe.form_factor * (f0 * lobe.terms.x + (1.0 - f0) * lobe.terms.y)
 }
 
 /// Whether the shaded point is in front of the light.

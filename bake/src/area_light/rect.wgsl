@@ -39,6 +39,14 @@ struct GlintRoughness {
     axis: vec2f,
 }
 
+// A light on a lobe.
+struct GlintLobeLight {
+    // How much of the lobe the light fills, 0 to 1.
+    form_factor: f32,
+    // What the tables say of the lobe, see glint_ltc_terms.
+    terms: vec4f,
+}
+
 // Two unit vectors across a third.
 struct GlintTangentFrame {
     x: vec3f,
@@ -162,9 +170,8 @@ fn glint_corner_to_cosine(m: vec4f, stretch: vec3f, x: vec3f, y: vec3f, normal: 
     return vec3f(stretch.x * v.x + stretch.y * v.y, stretch.y * v.x + stretch.z * v.y, v.z);
 }
 
-// Radiance towards `view` of one lobe about the unit `normal`, with reflectance `f0` at normal incidence, for a light of
-// radiance 1.
-fn glint_lobe_radiance(normal: vec3f, roughness: GlintRoughness, view: vec3f, f0: vec3f, light: GlintRectLight) -> vec3f {
+// What a light and one lobe about the unit `normal` have in common, seen from `view`.
+fn glint_lobe_light(normal: vec3f, roughness: GlintRoughness, view: vec3f, light: GlintRectLight) -> GlintLobeLight {
     let frame = glint_tangent_frame(normal);
     let across = vec2f(dot(frame.x, view), dot(frame.y, view));
     let size = length(across);
@@ -187,7 +194,14 @@ fn glint_lobe_radiance(normal: vec3f, roughness: GlintRoughness, view: vec3f, f0
         glint_corner_to_cosine(m, s, x, y, normal, light.corner_2),
         glint_corner_to_cosine(m, s, x, y, normal, light.corner_3),
     );
-    return form_factor * (f0 * terms.x + (vec3f(1.0) - f0) * terms.y);
+    return GlintLobeLight(form_factor, terms);
+}
+
+// Radiance towards `view` of one lobe about the unit `normal`, with reflectance `f0` at normal incidence, for a light of
+// radiance 1.
+fn glint_lobe_radiance(normal: vec3f, roughness: GlintRoughness, view: vec3f, f0: vec3f, light: GlintRectLight) -> vec3f {
+    let lobe = glint_lobe_light(normal, roughness, view, light);
+    return lobe.form_factor * (f0 * lobe.terms.x + (vec3f(1.0) - f0) * lobe.terms.y);
 }
 
 // Whether the shaded point is in front of the light.

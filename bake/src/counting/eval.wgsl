@@ -181,8 +181,17 @@ fn glint_walk_steps(walk: GlintWalk, left: f32, odds: f32, k: f32) -> GlintWalk 
 }
 
 // Hits k with P(hits > k) <= u of n trials with p <= 1/2, q = 1 - p, (1 - p)^n = 2^-y and np at most a few, of the nodes that are
-// `walked`; 0 of the others.
-fn glint_few_hits(n: vec4f, p: vec4f, q: vec4f, u: vec4f, y: vec4f, walked: vec4<bool>) -> vec4f {
+// `few`; 0 of the others. Nodes that are not `drawn`, which is known when a program is made, are not walked.
+fn glint_few_hits(
+    n: vec4f,
+    p: vec4f,
+    q: vec4f,
+    u: vec4f,
+    y: vec4f,
+    few: vec4<bool>,
+    drawn: vec4<bool>,
+) -> vec4f {
+    let walked = few & drawn;
     // q is 0 besides p where nothing is drawn.
     let odds = p / max(q, vec4f(0.5));
     let none = glint_halved(min(y, vec4f(GLINT_MOST_HALVINGS)));
@@ -194,9 +203,15 @@ fn glint_few_hits(n: vec4f, p: vec4f, q: vec4f, u: vec4f, y: vec4f, walked: vec4
     // Every node takes as many steps as the last of the four. The test is at the end: some devices run what follows it once more.
     for (var k = 0.0; k < GLINT_WALK_STEPS; k += 4.0) {
         a = glint_walk_steps(a, n.x - k, odds.x, k);
-        b = glint_walk_steps(b, n.y - k, odds.y, k);
-        c = glint_walk_steps(c, n.z - k, odds.z, k);
-        d = glint_walk_steps(d, n.w - k, odds.w, k);
+        if drawn.y {
+            b = glint_walk_steps(b, n.y - k, odds.y, k);
+        }
+        if drawn.z {
+            c = glint_walk_steps(c, n.z - k, odds.z, k);
+        }
+        if drawn.w {
+            d = glint_walk_steps(d, n.w - k, odds.w, k);
+        }
         if !any(walked & (vec4f(a.excess, b.excess, c.excess, d.excess) > vec4f(0.0))) {
             break;
         }
@@ -250,7 +265,7 @@ fn glint_whole_binomial(n: GlintCounts, p: vec4f, q: vec4f, u: vec4f, v: vec4f, 
     // Logarithms of both ways are one polynomial.
     let digits = glint_digits(4.0 * u * v);
     let halvings = glint_halvings(select(digits.rest, rare, few));
-    let walked = glint_few_hits(value, rare, frequent, word, value * halvings, few & drawn);
+    let walked = glint_few_hits(value, rare, frequent, word, value * halvings, few, drawn);
     let many = glint_many_hits(n, rare, frequent, word, digits.whole + halvings);
     let hits = GlintCounts(select(many.high, walked, few), select(many.low, vec4f(0.0), few));
     let misses = glint_count_difference(n, hits);

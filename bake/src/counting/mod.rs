@@ -4,7 +4,8 @@
 //! K levels are a multinomial draw, made of K − 1 binomial ones in a binary tree ([`multinomial()`]). The paper draws
 //! a binomial number from gates and a clamped Gaussian ([`paper`], kept as a baseline). Here it is the inverse of the
 //! distribution function at one uniform number: exact where few facets are hit, a Cornish–Fisher expansion around the
-//! Gaussian where many are ([`binomial()`]). Both are in [`eval`], f32, as shaders have them. [`pow1m`](mod@pow1m) holds powers
+//! Gaussian where many are ([`binomial()`]). Both are in [`eval`], f32, as shaders have them; [`query`] says which facets a pixel sees, as the random words
+//! that its draws read. [`pow1m`](mod@pow1m) holds powers
 //! (1 − p)^N against the paper's; [`reference`](mod@reference) says the same as [`eval`] from the definitions in f64, and
 //! [`quality`] measures one by the other.
 //!
@@ -18,8 +19,9 @@ pub mod eval;
 pub mod paper;
 pub mod pow1m;
 pub mod quality;
+pub mod query;
 pub mod reference;
 
-crate::shader::shaders!("counting": "eval");
+crate::shader::shaders!("counting": "eval", "query");
 
 pub use eval::{Count, MAX_LEVELS, binomial, multinomial};

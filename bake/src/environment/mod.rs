@@ -3,7 +3,7 @@
 //! Method: Kneiphof and Klein 2025, "Real-Time Image-based Lighting of Glints", sections 3.3 to 5. An equirectangular
 //! image ([`image`]) becomes a cube ([`cube`]), and cubes that are filtered with a GGX lobe each ([`kernel`], [`prefilter`]): radiance, its square, and the share of each of a few radiance levels ([`levels`]). At run time ([`eval`], by look-ups as in
 //! [`lookup`]) the shares are the probabilities that a facet reflects each level, scaled by areas that depend on view angle and
-//! roughness only ([`albedo`]), by round look-ups that stand for the lobe seen at an angle ([`fitted`]), and one draw a pixel is made with the random words of a place on the surface ([`query`]).
+//! roughness only ([`albedo`]), by round look-ups that stand for the lobe seen at an angle ([`fitted`]), and one draw a pixel is made with the random words of a place on the surface ([`counting::query`](crate::counting::query)).
 //! [`reference`] sums over every pixel in f64 and places facets one by one; [`quality`] measures texels and [`reads`] look-ups by it.
 //!
 //! What deviates from the paper, and why, stands on top of each file and in `docs/methods/environment.md`. The main points:
@@ -26,7 +26,6 @@ pub mod lookup;
 pub mod options;
 mod prefilter;
 pub mod quality;
-pub mod query;
 pub mod reads;
 pub mod reference;
 mod rounding;
@@ -35,7 +34,7 @@ mod source;
 mod table;
 mod tree;
 
-crate::shader::shaders!("environment": "eval", "query");
+crate::shader::shaders!("environment": "eval");
 
 pub use bake::bake;
 pub use baked::Environment;

@@ -49,6 +49,11 @@ fn check_material(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec
         let message = "the parameters say that the material is isotropic, yet there is this section";
         issues.push(roughness.error(IssueCode::AreaLightShape, message));
     }
+    check_tables(inverse, terms, issues);
+}
+
+/// Checks the LTC tables of a material, those that are there.
+pub(crate) fn check_tables(inverse: Option<Loaded<'_>>, terms: Option<Loaded<'_>>, issues: &mut Vec<Issue>) {
     let table = Resource::Texture {
         vk_format: TABLE_VK_FORMAT,
         width: TABLE_SIZE,

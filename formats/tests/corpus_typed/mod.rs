@@ -3,6 +3,7 @@
 mod area_light;
 mod dictionary;
 mod environment;
+mod glints;
 mod lobes;
 mod ndf_maps;
 mod surface;
@@ -23,6 +24,7 @@ pub fn cases() -> Vec<Case> {
     cases.extend(ndf_maps::layer_cases());
     cases.extend(dictionary::cases());
     cases.extend(environment::cases());
+    cases.extend(glints::cases());
     cases.extend(area_light::cases());
     cases.extend(lobes::cases());
     cases.extend(synthesis::cases());

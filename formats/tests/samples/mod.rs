@@ -3,6 +3,7 @@
 mod area_light;
 mod dictionary;
 mod environment;
+mod glints;
 mod lobes;
 mod ndf_maps;
 mod seals;
@@ -15,6 +16,7 @@ pub use environment::*;
 use glint_formats::container::{FourCc, Limits};
 use glint_formats::provenance::{InputDigest, PROVENANCE, Provenance};
 use glint_formats::{IssueCode, PackBuilder, Section, validate};
+pub use glints::*;
 pub use lobes::*;
 pub use ndf_maps::*;
 pub use seals::*;
@@ -60,6 +62,7 @@ pub fn full_pack() -> Vec<u8> {
     sections.extend(good_dictionary());
     sections.extend(environment_sections(&environment_params(), &environment_indicators(), 0x3c00));
     sections.extend(good_area_light());
+    sections.extend(good_glints());
     sections.extend(good_lobes());
     sections.extend(good_synthesis());
     pack(sections)

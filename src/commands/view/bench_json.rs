@@ -33,7 +33,7 @@ struct Bench<'a> {
 struct Row<'a> {
     method: &'static str,
     material: &'a str,
-    from: &'static str,
+    from: &'a str,
     baseline: &'static str,
     milliseconds: f64,
     ratio: f64,
@@ -68,7 +68,7 @@ fn row(row: &BenchRow) -> Row<'_> {
     Row {
         method: row.method,
         material: &row.name,
-        from: row.view,
+        from: &row.view,
         baseline: row.baseline,
         milliseconds: 1e3 * row.frame,
         ratio: row.frame_ratio,

@@ -128,6 +128,12 @@ pub struct SceneFlags {
     /// Direction towards the sun
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = values::direction)]
     pub sun: Option<[f32; 3]>,
+    /// Angle across the sun's disk as counted facets see it, in degrees, 0 to 180
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.533, value_parser = values::not_negative)]
+    pub sun_size: f32,
+    /// Radius of the points as counted facets see them, in world units [default: a fiftieth of the mesh's radius]
+    #[arg(long, value_name = "RADIUS", value_parser = values::not_negative)]
+    pub point_radius: Option<f32>,
     /// Turn of the environment around the vertical axis, in degrees
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_hyphen_values = true, value_parser = values::finite)]
     pub turn: f32,
@@ -143,7 +149,7 @@ pub struct MaterialFlags {
     /// Roughness α, the same along both axes, or along each
     #[arg(long, value_name = "A[,B]", value_delimiter = ',', num_args = 1..=2, value_parser = values::positive)]
     pub alpha: Vec<f64>,
-    /// Distribution of slopes that dictionaries converge to
+    /// Distribution of slopes that dictionaries and counted facets converge to
     #[arg(long, value_name = "TARGET")]
     pub target: Option<TargetKind>,
     /// Facets on one surface unit squared
@@ -170,6 +176,12 @@ pub struct MaterialFlags {
     /// Colour of glints, linear RGB; may be given more than once
     #[arg(long, value_name = "R,G,B", value_parser = values::reflectance3)]
     pub colour: Vec<[f32; 3]>,
+    /// Half angle of the cone that a counted facet reflects a point into, in degrees
+    #[arg(long, value_name = "DEGREES", value_parser = values::positive)]
+    pub facet_spread: Option<f64>,
+    /// By how much the eye turns, in degrees, until counted facets under an environment are others; 0 for never
+    #[arg(long, value_name = "DEGREES", value_parser = values::not_negative)]
+    pub sky_spread: Option<f32>,
     /// Lobes of directional roughness of area lights, 0 to 9
     ///
     /// 0 is round.

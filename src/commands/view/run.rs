@@ -21,7 +21,7 @@ use glint_view::render::{
     picture,
 };
 use glint_view::scene::{Mesh, MeshError, Orbit, Placement};
-use glint_view::settings::{Against, Layout, Settings};
+use glint_view::settings::{Against, Layout, Settings, cone_solid_angle};
 use glint_view::subjects::Subjects;
 use glint_view::window::{Hooks, Loaded, Start, WindowError};
 use std::path::{Path, PathBuf};
@@ -283,6 +283,10 @@ fn settings(args: &Args, list: &[Subject], camera: Orbit, placement: Option<Plac
     if let Some(direction) = args.scene.sun {
         settings.lights.sun.direction = direction.into();
     }
+    settings.lights.sun.solid_angle_sr = cone_solid_angle(args.scene.sun_size.min(180.0));
+    if let Some(radius) = args.scene.point_radius {
+        settings.lights.points.iter_mut().for_each(|point| point.radius = radius);
+    }
     let mut lights: Vec<LightKind> = args.scene.light.iter().map(|light| light.kind()).collect();
     if lights.is_empty() {
         lights.push(list[settings.shown].method.usual_light());
@@ -322,6 +326,8 @@ fn apply(flags: &MaterialFlags, material: &mut Material) {
     material.relative_area = flags.relative_area.unwrap_or(material.relative_area);
     material.density_randomisation = flags.density_randomisation.unwrap_or(material.density_randomisation);
     material.f0 = flags.f0.unwrap_or(material.f0);
+    set(&mut material.facet_spread, flags.facet_spread.map(f64::to_radians));
+    material.sky_spread = flags.sky_spread.map_or(material.sky_spread, f32::to_radians);
     material.lobes = flags.lobes.unwrap_or(material.lobes);
     material.seed = flags.seed.unwrap_or(material.seed);
     if flags.swap_layers {
@@ -373,8 +379,9 @@ fn turntable(
 fn bench(args: &Args, gpu: &Gpu, subjects: &Subjects, settings: &Settings, terminal: Terminal) -> Result<(), Failure> {
     let size = size(args);
     let bench = BenchSettings { size, frames: args.picture.frames.unwrap_or(20), ..BenchSettings::default() };
-    let walls: Vec<Setup> =
-        (0..subjects.shown.len()).flat_map(|index| Setup::of(&subjects.shown, index, settings, bench)).collect();
+    let walls: Vec<Setup> = (0..subjects.shown.len())
+        .flat_map(|index| Setup::of(&subjects.shown, index, settings, bench, subjects.environment.is_some()))
+        .collect();
     let stages = Stages::new(terminal);
     stages.begin("bench", walls.len() as u64);
     let mut rows = Vec::new();

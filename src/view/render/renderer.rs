@@ -210,7 +210,7 @@ impl Renderer {
             material.seed = material.seed.wrapping_add(self.frames);
         }
         let group = scene_group(gpu, &self.scene_layout, &scene, &material);
-        let constants = side.shown.pipeline_constants(&material).into_iter();
+        let constants = side.shown.pipeline_constants(&material, &view_of.scene.lights).into_iter();
         let key = Key {
             method: side.shown.method,
             lights: view_of.scene.lights.bits(),
@@ -356,7 +356,7 @@ fn scene_group(
     material: &Material,
 ) -> wgpu::BindGroup {
     let uniform = |contents| gpu.buffer(wgpu::BufferUsages::UNIFORM, contents);
-    let buffers = [uniform(bytemuck::bytes_of(scene)), uniform(bytemuck::bytes_of(material))];
+    let buffers = [uniform(bytemuck::bytes_of(scene)), uniform(bytemuck::bytes_of(&material.complete()))];
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout,

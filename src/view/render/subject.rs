@@ -1,6 +1,6 @@
 //! What can be shown of a pack: a method with its data, its parameters, and the WGSL that draws it.
 
-use super::uniforms::{ACCURATE, Material};
+use super::uniforms::{ACCURATE, Lights, MAX_POINT_LIGHTS, Material};
 use crate::gpu::Resources;
 use std::rc::Rc;
 
@@ -32,6 +32,8 @@ pub enum Method {
     Surface,
     /// Environment with glints, by radiance levels.
     Environment,
+    /// Counted facets under every light.
+    Glints,
     /// Multi-scale LTC: mean normals with the roughness of what they average.
     AreaLight,
     /// The same normals with one roughness everywhere: plain LTC.
@@ -59,6 +61,7 @@ impl Method {
         Method::Lobes,
         Method::Surface,
         Method::Environment,
+        Method::Glints,
         Method::AreaLight,
         Method::PlainLtc,
         Method::Textures,
@@ -86,6 +89,9 @@ impl Method {
                 baseline: Some(Method::Smooth),
                 has_map: false,
             },
+            Method::Glints => {
+                Facts { name: "glints", light: LightKind::Sun, baseline: Some(Method::Smooth), has_map: false }
+            }
             Method::AreaLight => {
                 Facts { name: "area-light", light: LightKind::Rect, baseline: Some(Method::PlainLtc), has_map: true }
             }
@@ -119,6 +125,11 @@ impl Method {
         self.facts().has_map
     }
 
+    /// Whether it has a reference besides the mean over its seeds.
+    pub fn has_reference(self) -> bool {
+        !matches!(self, Method::Environment | Method::Glints)
+    }
+
     /// Pipeline constants of its program that follow from a material.
     fn constants(self, material: &Material) -> Vec<(&'static str, f64)> {
         match self {
@@ -128,6 +139,7 @@ impl Method {
                 asks("DICTIONARY_COLOURED", material.colours > 0),
             ],
             Method::NdfMaps => vec![asks("NDF_MAPS_ACCURATE", material.switches & ACCURATE != 0)],
+            Method::Glints => vec![asks("GLINTS_COLOURED", material.colours > 0)],
             Method::AreaLight => vec![asks("AREA_LIGHT_DIRECTIONAL", material.lobes > 0)],
             _ => Vec::new(),
         }
@@ -164,10 +176,13 @@ impl Subject {
         all.iter().map(|data| data.bytes).sum()
     }
 
-    /// All pipeline constants of its program for a material.
-    pub(super) fn pipeline_constants(&self, material: &Material) -> Vec<(&'static str, f64)> {
+    /// All pipeline constants of its program for a material in these lights.
+    pub(super) fn pipeline_constants(&self, material: &Material, lights: &Lights) -> Vec<(&'static str, f64)> {
         let mut constants = self.constants.clone();
         constants.extend(self.method.constants(material));
+        if self.method == Method::Glints {
+            constants.push(("GLINTS_POINTS", lights.points.len().min(MAX_POINT_LIGHTS) as f64));
+        }
         if matches!(self.method, Method::Lobes | Method::Surface) {
             constants.push(asks("LOBES_RIM", material.intrinsic_roughness > self.rim_roughness));
         }

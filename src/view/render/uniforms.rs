@@ -2,6 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Mat4, Vec2, Vec3};
+use glint_bake_core::microfacet::{SmoothSurface, microfacet_area};
 
 /// Lights of a scene, most of them at once.
 pub const MAX_POINT_LIGHTS: usize = 4;
@@ -53,6 +54,8 @@ pub struct Sun {
     pub direction: Vec3,
     /// Irradiance of a surface that faces it, linear RGB.
     pub irradiance: Vec3,
+    /// Solid angle as counted facets see it, in steradians.
+    pub solid_angle_sr: f32,
 }
 
 /// Light from a point.
@@ -62,6 +65,8 @@ pub struct PointLight {
     pub position: Vec3,
     /// Radiant intensity, linear RGB.
     pub intensity: Vec3,
+    /// Radius of the sphere that it is as counted facets see it.
+    pub radius: f32,
 }
 
 /// A rectangle that radiates evenly.
@@ -155,6 +160,22 @@ pub struct Material {
     pub pixel_sigma: f32,
     /// Switches of a method, see its shade file.
     pub switches: u32,
+    /// Whole facet area over surface area of counted facets; [`Material::complete`] has it from the roughness.
+    pub facet_area: f32,
+    /// Half angle of the cone that a counted facet reflects a point into, in radians.
+    pub facet_spread: f32,
+    /// By how much the eye turns, in radians, until counted facets under an environment are others; 0 for never.
+    pub sky_spread: f32,
+    /// 0.
+    pub unused: f32,
+}
+
+impl Material {
+    /// The material with what follows from the rest of it.
+    pub(super) fn complete(&self) -> Material {
+        let smooth = SmoothSurface { alpha: Vec2::from_array(self.alpha), normal_target: self.normal_target };
+        Material { facet_area: microfacet_area(smooth), ..*self }
+    }
 }
 
 impl Default for Material {
@@ -175,6 +196,10 @@ impl Default for Material {
             lobes: 3,
             pixel_sigma: 0.5,
             switches: 0,
+            facet_area: 1.0,
+            facet_spread: 0.004_65,
+            sky_spread: 0.0,
+            unused: 0.0,
         }
     }
 }
@@ -196,7 +221,7 @@ pub(super) struct SceneUniform {
     rect_two_sided: u32,
     environment_from_world: [[f32; 4]; 3],
     environment_gain: f32,
-    unused: f32,
+    sun_solid_angle: f32,
     half_size: [f32; 2],
     world_from_camera: [[f32; 4]; 3],
 }
@@ -213,6 +238,7 @@ impl SceneUniform {
         let mut points = [[0.0; 8]; MAX_POINT_LIGHTS];
         for (slot, light) in points.iter_mut().zip(&lights.points) {
             slot[..3].copy_from_slice(&light.position.to_array());
+            slot[3] = light.radius;
             slot[4..7].copy_from_slice(&light.intensity.to_array());
         }
         let environment = lights.environment.unwrap_or(Environment { turn: 0.0, gain: 0.0 });
@@ -232,7 +258,7 @@ impl SceneUniform {
             rect_two_sided: u32::from(lights.rect.is_some_and(|rect| rect.two_sided)),
             environment_from_world: columns(Mat3::from_rotation_y(-environment.turn)),
             environment_gain: environment.gain,
-            unused: 0.0,
+            sun_solid_angle: lights.sun.map_or(0.0, |sun| sun.solid_angle_sr),
             half_size: [half_height * size[0] as f32 / size[1] as f32, half_height],
             world_from_camera: columns(scene.camera.axes()),
         }
@@ -264,6 +290,7 @@ mod tests {
             rect_two_sided,
             environment_from_world,
             environment_gain,
+            sun_solid_angle,
             half_size,
             world_from_camera
         );
@@ -285,7 +312,10 @@ mod tests {
             texels_per_unit,
             lobes,
             pixel_sigma,
-            switches
+            switches,
+            facet_area,
+            facet_spread,
+            sky_spread
         );
     }
 

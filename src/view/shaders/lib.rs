@@ -36,6 +36,8 @@ const OWN: &[Shader] = &[
     own!("bind_area_light_loads"),
     own!("query_area_light"),
     own!("query_counting"),
+    own!("bind_glints"),
+    own!("query_glints"),
     own!("bind_environment"),
     own!("bind_environment_exact"),
     own!("query_environment"),
@@ -59,7 +61,10 @@ const OWN: &[Shader] = &[
     own!("shade_background"),
     own!("shade_environment_surface"),
     own!("shade_environment_smooth"),
+    own!("shade_environment_levels"),
     own!("shade_environment"),
+    own!("shade_glints"),
+    own!("shade_each_light"),
     own!("shade_ndf_maps"),
     own!("shade_ndf_maps_environment"),
     own!("shade_normals"),
@@ -86,22 +91,70 @@ pub type Program = (&'static str, &'static [&'static str]);
 
 /// Programs that shade a surface, by method.
 pub const SHADING: &[Program] = &[
-    ("smooth", &["view_surface", "shade_smooth", "shade_rect_points", "shade_environment_smooth", "shade_mirror"]),
+    (
+        "smooth",
+        &[
+            "view_surface",
+            "shade_each_light",
+            "shade_smooth",
+            "shade_rect_points",
+            "shade_environment_smooth",
+            "shade_mirror",
+        ],
+    ),
     (
         "dictionary",
-        &["view_surface", "shade_dictionary", "shade_rect_points", "shade_environment_smooth", "shade_mirror"],
+        &[
+            "view_surface",
+            "shade_each_light",
+            "shade_dictionary",
+            "shade_rect_points",
+            "shade_environment_smooth",
+            "shade_mirror",
+        ],
     ),
     (
         "ndf-maps",
-        &["view_surface", "shade_ndf_maps", "shade_rect_points", "shade_ndf_maps_environment", "shade_mirror"],
+        &[
+            "view_surface",
+            "shade_each_light",
+            "shade_ndf_maps",
+            "shade_rect_points",
+            "shade_ndf_maps_environment",
+            "shade_mirror",
+        ],
     ),
-    ("lobes", &["view_surface", "shade_lobes", "shade_rect_points", "shade_environment_smooth", "shade_mirror"]),
-    ("surface", &["view_surface", "shade_surface", "shade_rect_points", "shade_environment_smooth", "shade_mirror"]),
-    ("environment", &["view_surface", "shade_environment", "shade_rect_points", "shade_mirror"]),
-    ("area-light", &["view_surface", "shade_area_light", "shade_environment_smooth", "shade_mirror"]),
-    ("plain-ltc", &["view_surface", "shade_plain_ltc", "shade_environment_smooth", "shade_mirror"]),
-    ("textures", &["view_surface", "shade_textures", "shade_rect_points"]),
-    ("plain-textures", &["view_surface", "shade_textures", "shade_rect_points"]),
+    (
+        "lobes",
+        &[
+            "view_surface",
+            "shade_each_light",
+            "shade_lobes",
+            "shade_rect_points",
+            "shade_environment_smooth",
+            "shade_mirror",
+        ],
+    ),
+    (
+        "surface",
+        &[
+            "view_surface",
+            "shade_each_light",
+            "shade_surface",
+            "shade_rect_points",
+            "shade_environment_smooth",
+            "shade_mirror",
+        ],
+    ),
+    ("environment", &["view_surface", "shade_each_light", "shade_environment", "shade_rect_points", "shade_mirror"]),
+    ("glints", &["view_surface", "shade_glints", "shade_mirror"]),
+    (
+        "area-light",
+        &["view_surface", "shade_each_light", "shade_area_light", "shade_environment_smooth", "shade_mirror"],
+    ),
+    ("plain-ltc", &["view_surface", "shade_each_light", "shade_plain_ltc", "shade_environment_smooth", "shade_mirror"]),
+    ("textures", &["view_surface", "shade_each_light", "shade_textures", "shade_rect_points"]),
+    ("plain-textures", &["view_surface", "shade_each_light", "shade_textures", "shade_rect_points"]),
 ];
 
 /// Files of which a method takes one of each group, as its pack stores data; the first where it is all the same.

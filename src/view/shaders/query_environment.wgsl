@@ -1,7 +1,7 @@
 // Answers queries of glints under an environment, one an invocation.
 
 #import environment::eval
-#import environment::query
+#import counting::query
 
 struct EnvironmentQuery {
     normal: vec3f,
@@ -42,17 +42,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let q = queries[id.x];
     let area = glint_footprint_area(q.d_dx, q.d_dy);
-    let lod = glint_surface_lod(area);
+    let footprint = glint_footprint_box(q.d_dx, q.d_dy);
     var facets = q.facets;
     var words = q.words;
     if q.own_words != 0u {
         facets = glint_footprint_facets(area, q.density);
-        words = glint_surface_words(glint_surface_cells(q.position, lod, q.seed), environment.levels);
+        words = glint_cell_words(glint_facet_cell(footprint, q.position, q.seed), environment.levels);
     }
     let surface = GlintSurface(q.normal, q.view, q.alpha, vec3f(q.f0), facets);
     let chances = glint_chances(environment, surface);
     answers[id.x] = EnvironmentAnswer(
         chances.smooth_radiance, chances.std_factor, glint_environment_glints(environment, surface, words), facets,
-        chances.moments, lod, 0u, chances.p, words,
+        chances.moments, footprint.lod, 0u, chances.p, words,
     );
 }

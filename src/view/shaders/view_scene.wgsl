@@ -5,6 +5,9 @@
 //       BRDF times n.l for light from the unit direction `light` (tangent frame), linear RGB
 //   fn shade_reference(point: ViewPoint, light: vec3f, random: vec2f) -> vec3f
 //       the same, as one sample whose mean over `random` in [0, 1)^2 is what the method approximates
+//   fn shade_lights(point: ViewPoint, random: vec2f) -> vec3f
+//       radiance towards the viewer from the directional light, the points, the rectangle and the environment, those that LIGHTS says;
+//       shade_each_light.wgsl does it by the hooks above and below
 //   fn shade_rect(point: ViewPoint) -> vec3f
 //       radiance towards the viewer from the scene's rectangle; shade_rect_points.wgsl does it by samples of shade_reflect
 //   fn shade_environment(point: ViewPoint) -> vec3f
@@ -25,6 +28,8 @@ const VIEW_LIGHT_ROOM: u32 = 16u;
 
 struct ViewPointLight {
     position: vec3f,
+    // Radius of the sphere that it is as counted facets see it.
+    radius: f32,
     // Radiant intensity, linear RGB.
     intensity: vec3f,
 }
@@ -50,6 +55,8 @@ struct ViewScene {
     environment_from_world: mat3x3f,
     // Factor on the environment's radiance.
     environment_gain: f32,
+    // Solid angle of the directional light as counted facets see it, in steradians.
+    sun_solid_angle: f32,
     // Half the picture's width and height at distance 1.
     half_size: vec2f,
     // Columns: camera's right, up and back in the world.
@@ -84,6 +91,12 @@ struct ViewMaterial {
     pixel_sigma: f32,
     // Switches of a method, see its shade file.
     switches: u32,
+    // Whole facet area over surface area of counted facets; follows from the roughness.
+    facet_area: f32,
+    // Half angle of the cone that a counted facet reflects a point into, in radians.
+    facet_spread: f32,
+    // By how much the eye turns, in radians, until facets under an environment are others; 0 for never.
+    sky_spread: f32,
 }
 
 // The pixel's place on the surface and its frame.

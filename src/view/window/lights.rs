@@ -11,6 +11,8 @@ pub(super) fn show(ui: &mut Ui, lights: &mut LightSettings) {
     if lights.sun_on {
         direction(ui, &mut lights.sun.direction);
         strength(ui, &mut lights.sun.irradiance, "irradiance");
+        let slider = Slider::new(&mut lights.sun.solid_angle_sr, 1e-6..=0.1).logarithmic(true);
+        ui.add(slider.text("solid angle, steradians"));
     }
     ui.checkbox(&mut lights.points_on, "points");
     if lights.points_on {
@@ -83,6 +85,7 @@ fn points(ui: &mut Ui, points: &mut Vec<PointLight>) {
         ui.push_id(index, |ui| {
             place(ui, &mut light.position, "position");
             strength(ui, &mut light.intensity, "intensity");
+            ui.add(DragValue::new(&mut light.radius).speed(0.005).range(0.0..=1e3).prefix("radius "));
             if ui.button("Remove").clicked() {
                 removed = Some(index);
             }
@@ -93,7 +96,7 @@ fn points(ui: &mut Ui, points: &mut Vec<PointLight>) {
     }
     if points.len() < MAX_POINT_LIGHTS && ui.button("Add a point").clicked() {
         let position = points.last().map_or(Vec3::new(0.0, 1.0, 0.0), |light| light.position + 0.3 * Vec3::X);
-        points.push(PointLight { position, intensity: Vec3::ONE });
+        points.push(PointLight { position, intensity: Vec3::ONE, radius: 0.02 });
     }
 }
 

@@ -133,6 +133,13 @@ fn parameters(ui: &mut Ui, method: Method, material: &mut Material) {
             roughness(ui, material);
             facets(ui, material);
         }
+        Method::Glints => {
+            roughness(ui, material);
+            facets(ui, material);
+            let slider = Slider::new(&mut material.facet_spread, 1e-4..=0.5).logarithmic(true);
+            ui.add(slider.text("spread of a facet, radians"));
+            ui.add(Slider::new(&mut material.sky_spread, 0.0..=0.5).text("spread under an environment, radians"));
+        }
         Method::AreaLight => {
             base_roughness(ui, material);
             ui.add(Slider::new(&mut material.lobes, 0..=9).text("lobes by direction (0: round)"));

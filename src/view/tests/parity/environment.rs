@@ -8,12 +8,10 @@ use crate::support::{QUERIES, agree, compare, gpu, log_uniform, random, real_fil
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
 use glint_bake_core::counting::eval::{tree_leaves, unit_from_bits};
+use glint_bake_core::counting::query::{cell_words, facet_cell, footprint_area, footprint_box, footprint_facets};
 use glint_bake_core::environment::eval::{Surface, chances, environment_glints};
 use glint_bake_core::environment::image::direction as direction_at;
 use glint_bake_core::environment::options::LevelCount;
-use glint_bake_core::environment::query::{
-    footprint_area, footprint_facets, surface_cells, surface_lod, surface_words,
-};
 use glint_bake_core::environment::sections::to_sections;
 use glint_bake_core::environment::{Environment, EnvironmentImage, EnvironmentOptions, bake};
 use glint_bake_core::progress::Silent;
@@ -177,6 +175,7 @@ struct Pairs {
     words: Vec<(f32, f32)>,
     small_words: Vec<(f32, f32)>,
     flipped: usize,
+    elsewhere: usize,
 }
 
 /// Twin's radiance for these words and, where the shader's is another, for words beside them.
@@ -197,7 +196,7 @@ fn hold(environment: &Environment, queries: &[Query], answers: &[Answer], pairs:
     let leaves = tree_leaves(levels.max(2));
     for (query, answer) in queries.iter().zip(answers) {
         let area = footprint_area(query.d_dx, query.d_dy);
-        let lod = surface_lod(area);
+        let footprint = footprint_box(query.d_dx, query.d_dy);
         let facets = if query.own_words != 0 { footprint_facets(area, query.density) } else { query.facets };
         let surface = query.surface(facets);
         let chances = chances(environment, &surface);
@@ -209,13 +208,18 @@ fn hold(environment: &Environment, queries: &[Query], answers: &[Answer], pairs:
             .variance
             .push((variance(answer.std_factor, answer.moments), variance(chances.std_factor, chances.moments)));
         if query.own_words != 0 {
-            let words = surface_words(&surface_cells(query.position, lod, query.seed), leaves);
+            let words = cell_words(facet_cell(footprint, query.position, query.seed), leaves);
+            // A cell is a step function of the place.
+            if !(0..leaves).all(|i| agree(answer.words[i], words[i])) {
+                pairs.elsewhere += 1;
+                continue;
+            }
             for i in 0..leaves {
                 pairs.words.push((answer.words[i], words[i]));
                 // Rare ones by their size: a word is as rare as it is small.
                 pairs.small_words.push((answer.words[i].max(1e-8).log10(), words[i].max(1e-8).log10()));
             }
-            assert!(agree(answer.facets, facets) && agree(answer.lod, lod), "{query:?} {answer:?}");
+            assert!(agree(answer.facets, facets) && agree(answer.lod, footprint.lod), "{query:?} {answer:?}");
         }
         // With the shader's own words, so that differences do not pile up.
         let surface = query.surface(answer.facets);
@@ -234,6 +238,7 @@ fn hold(environment: &Environment, queries: &[Query], answers: &[Answer], pairs:
 fn finish(what: &str, pairs: Pairs, queries: usize) {
     println!("{what}: {} of {queries} draws on the other side of a step", pairs.flipped);
     assert!(pairs.flipped as f64 <= MAX_FLIPPED * queries as f64, "{} flipped", pairs.flipped);
+    assert!(pairs.elsewhere as f64 <= MAX_FLIPPED * queries as f64, "{} in other cells", pairs.elsewhere);
     compare(&format!("{what}, smooth"), pairs.smooth.into_iter());
     compare(&format!("{what}, probabilities"), pairs.p.into_iter());
     compare(&format!("{what}, relative variance of a facet"), pairs.variance.into_iter());

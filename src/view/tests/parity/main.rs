@@ -7,6 +7,7 @@ mod area_light;
 mod counting;
 mod dictionary;
 mod environment;
+mod glints;
 mod lobes;
 mod ndf_maps;
 mod support;

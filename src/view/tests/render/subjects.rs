@@ -5,6 +5,7 @@ use glint_bake_core::area_light::{self, AreaLightOptions};
 use glint_bake_core::dictionary::{self, DictionaryOptions, quality};
 use glint_bake_core::environment::image::{EnvironmentImage, direction as direction_at};
 use glint_bake_core::environment::{self, EnvironmentOptions};
+use glint_bake_core::glints::{self, GlintsOptions};
 use glint_bake_core::lobes::{self, LobesOptions};
 use glint_bake_core::ndf_maps::options::{NdfMapsOptions, PlacementOptions, StochasticOptions};
 use glint_bake_core::ndf_maps::placement::place;
@@ -112,11 +113,25 @@ fn area_light_pack() -> Pack {
     pack(area_light::sections::to_sections("waves", &baked, Codec::None))
 }
 
+fn glints_pack() -> Pack {
+    let colours = vec![[1.0, 0.4, 0.2], [0.3, 0.6, 1.0]];
+    let options = GlintsOptions { colours, relative_area: 0.8, ..GlintsOptions::default() };
+    pack(glints::sections::to_sections("flakes", &glints::bake(&options, &Silent).unwrap(), Codec::None))
+}
+
 /// A pack of every method.
 pub fn packs() -> &'static [Pack] {
     static PACKS: OnceLock<Vec<Pack>> = OnceLock::new();
     PACKS.get_or_init(|| {
-        vec![dictionary_pack(), ndf_maps_pack(), lobes_pack(), surface_pack(), environment_pack(), area_light_pack()]
+        vec![
+            dictionary_pack(),
+            ndf_maps_pack(),
+            lobes_pack(),
+            surface_pack(),
+            environment_pack(),
+            area_light_pack(),
+            glints_pack(),
+        ]
     })
 }
 

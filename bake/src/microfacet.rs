@@ -1,0 +1,95 @@
+//! Smooth microfacet surfaces of Beckmann or GGX slopes, whose roughness may differ between the tangent axes, with height-correlated Smith
+//! masking and Schlick's Fresnel factor: what counted facets converge to. f32; twin: `microfacet.wgsl`.
+//!
+//! Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces" (distributions, Λ of Beckmann's, section 5.2); Heitz 2014,
+//! "Understanding the Masking-Shadowing Function" (anisotropic Λ by the roughness along a direction, section 5.4.1).
+
+use crate::brdf::{fresnel, half_vector};
+use glam::{Vec2, Vec3};
+use std::f32::consts::PI;
+
+/// [`SmoothSurface::normal_target`] of Beckmann slopes.
+pub const BECKMANN: u32 = 0;
+/// [`SmoothSurface::normal_target`] of GGX slopes.
+pub const GGX: u32 = 1;
+/// Least cosine of directions to the surface's normal, and roughness.
+const LEAST: f32 = 1e-3;
+
+/// A smooth microfacet surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmoothSurface {
+    /// Roughness α along both tangent axes, 1e-3 to 1.
+    pub alpha: Vec2,
+    /// [`BECKMANN`] or [`GGX`].
+    pub normal_target: u32,
+}
+
+/// Distribution of normals D at the unit vector `m` with m.z > 0: ∫ D(m) m.z dm = 1.
+pub fn microfacet_ndf(surface: SmoothSurface, m: Vec3) -> f32 {
+    let v = Vec2::new(m.x, m.y) / surface.alpha;
+    let across = v.dot(v);
+    let z2 = (m.z * m.z).max(LEAST * LEAST * LEAST);
+    let area = PI * surface.alpha.x * surface.alpha.y;
+    if surface.normal_target == GGX {
+        let sum = z2 + across;
+        1.0 / (area * sum * sum)
+    } else {
+        (-across / z2).exp() / (area * z2 * z2)
+    }
+}
+
+/// Λ of Smith's masking for the unit direction `w` with w.z > 0.
+pub fn microfacet_lambda(surface: SmoothSurface, w: Vec3) -> f32 {
+    let v = Vec2::new(w.x, w.y) * surface.alpha;
+    let z = w.z.max(LEAST);
+    // Square of roughness times tangent, along w.
+    let x = v.dot(v) / (z * z);
+    if surface.normal_target == GGX {
+        // (√(1 + x) − 1) / 2 without cancellation.
+        return 0.5 * x / (1.0 + (1.0 + x).sqrt());
+    }
+    let a = 1.0 / x.max(1e-12).sqrt();
+    if a >= 1.6 { 0.0 } else { (1.0 - 1.259 * a + 0.396 * a * a) / (3.535 * a + 2.181 * a * a) }
+}
+
+/// What of the light that facets reflect from `light` to `view` (unit vectors) leaves the surface, over four times the view's cosine; 0 unless both
+/// are above the surface.
+pub fn microfacet_masked(surface: SmoothSurface, view: Vec3, light: Vec3) -> f32 {
+    if !(view.z > 0.0 && light.z > 0.0) {
+        return 0.0;
+    }
+    let masked = 1.0 + microfacet_lambda(surface, view) + microfacet_lambda(surface, light);
+    1.0 / (masked * 4.0 * view.z.max(LEAST))
+}
+
+/// BRDF, by colour, times the cosine of `light`, for unit vectors; 0 unless both are above the surface.
+pub fn microfacet_cosine(surface: SmoothSurface, f0: Vec3, view: Vec3, light: Vec3) -> Vec3 {
+    let half = half_vector(view, light);
+    fresnel(f0, view.dot(half)) * (microfacet_ndf(surface, half) * microfacet_masked(surface, view, light))
+}
+
+/// Whole facet area over surface area of one roughness, ∫ D(m) dm, as the square `alpha2` of the roughness has it: GGX's in closed form, 1 + α² atanh(β)/β,
+/// β = √(1 − α²); Beckmann's 1 + α √π/2 · exp(1/α²) erfc(1/α) by a form that is off by at most 2e-4.
+fn round_facet_area(normal_target: u32, alpha2: f32) -> f32 {
+    if normal_target == GGX {
+        let a2 = alpha2.clamp(1e-12, 0.9999);
+        let beta = (1.0 - a2).sqrt();
+        // atanh(β) = ½ ln((1 + β)² / α²), which keeps its digits at small α.
+        return 1.0 + a2 * ((1.0 + beta) * (1.0 + beta) / a2).ln() * 0.5 / beta;
+    }
+    1.0 + alpha2 / (1.0 + (1.0 + alpha2 * (2.0 - 0.313 * alpha2.sqrt())).sqrt())
+}
+
+/// Whole facet area over surface area, D_H = ∫ D(m) dm (Kneiphof and Klein 2025, section 3.2), 1 to 2: the mean of that of the roughness along
+/// every direction, whose square goes as a cosine of twice the angle (Gauss–Chebyshev quadrature).
+pub fn microfacet_area(surface: SmoothSurface) -> f32 {
+    const NODES: [f32; 4] = [0.980_785_3, 0.831_469_6, 0.555_570_2, 0.195_090_3];
+    let (x2, y2) = (surface.alpha.x * surface.alpha.x, surface.alpha.y * surface.alpha.y);
+    let (mean, difference) = (0.5 * (x2 + y2), 0.5 * (x2 - y2));
+    let mut sum = 0.0;
+    for node in NODES {
+        sum += round_facet_area(surface.normal_target, mean + difference * node);
+        sum += round_facet_area(surface.normal_target, mean - difference * node);
+    }
+    sum * 0.125
+}

@@ -1,0 +1,128 @@
+// A surface of counted facets: all lights of the scene draw from the facets that are found once. Its reference is the mean over seeds.
+
+#import shade_environment_surface
+#import shade_environment_levels
+#import environment::eval
+#import bind_glints
+
+// Points that are on, besides the directional light.
+override GLINTS_POINTS: u32 = 0u;
+// What a material has; false leaves its part out of the program.
+override GLINTS_COLOURED: bool = true;
+
+// Small lights and rectangles that are on.
+fn shade_glints_count() -> u32 {
+    var count = GLINTS_POINTS;
+    if (LIGHTS & VIEW_LIGHT_SUN) != 0u {
+        count += 1u;
+    }
+    if (LIGHTS & VIEW_LIGHT_RECT) != 0u {
+        count += 1u;
+    }
+    return count;
+}
+
+fn shade_glints_surface(point: ViewPoint) -> GlintCountedSurface {
+    let counted = GlintCountedMaterial(
+        material.f0,
+        material.normal_target,
+        material.alpha,
+        counted_material.turn,
+        select(vec3f(1.0), material.mean_colour, GLINTS_COLOURED),
+        select(0u, material.colours, GLINTS_COLOURED),
+        material.density,
+        material.relative_area,
+        material.facet_area,
+        material.facet_spread,
+        material.sky_spread,
+        material.seed,
+    );
+    return glint_counted_surface(counted, point.uv, point.d_dx, point.d_dy, point.view);
+}
+
+fn shade_glints_sun(point: ViewPoint, surface: GlintCountedSurface) -> GlintFacetLight {
+    let light = GlintConeLight(view_to_tangent(point, scene.sun), scene.sun_irradiance, scene.sun_solid_angle);
+    return glint_cone_light(surface, light);
+}
+
+fn shade_glints_point(point: ViewPoint, surface: GlintCountedSurface, index: u32) -> GlintFacetLight {
+    let light = scene.points[index];
+    let to_light = light.position - point.position;
+    let distance2 = max(dot(to_light, to_light), 1.0e-8);
+    let direction = view_to_tangent(point, to_light * inverseSqrt(distance2));
+    // Of a sphere that is near, half of all directions.
+    let solid_angle = 3.14159265 * min(light.radius * light.radius / distance2, 2.0);
+    return glint_cone_light(surface, GlintConeLight(direction, light.intensity / distance2, solid_angle));
+}
+
+fn shade_glints_rect(point: ViewPoint, surface: GlintCountedSurface) -> GlintFacetLight {
+    let light = GlintRectLight(
+        view_to_tangent(point, scene.rect[0].xyz - point.position),
+        view_to_tangent(point, scene.rect[1].xyz - point.position),
+        view_to_tangent(point, scene.rect[2].xyz - point.position),
+        view_to_tangent(point, scene.rect[3].xyz - point.position),
+        scene.rect_radiance,
+        scene.rect_two_sided,
+    );
+    return glint_rect_facets(surface, light);
+}
+
+// Light `number` of those that are drawn: the directional light, the points, the rectangle. What is on is known when a pipeline is made.
+fn shade_glints_light(point: ViewPoint, surface: GlintCountedSurface, number: u32) -> GlintFacetLight {
+    if number >= shade_glints_count() {
+        return GLINT_NO_LIGHT;
+    }
+    var index = number;
+    if (LIGHTS & VIEW_LIGHT_SUN) != 0u {
+        if number == 0u {
+            return shade_glints_sun(point, surface);
+        }
+        index -= 1u;
+    }
+    if index < GLINTS_POINTS {
+        return shade_glints_point(point, surface, index);
+    }
+    return shade_glints_rect(point, surface);
+}
+
+fn shade_glints_four(point: ViewPoint, surface: GlintCountedSurface, first: u32) -> vec3f {
+    let a = shade_glints_light(point, surface, first);
+    let b = shade_glints_light(point, surface, first + 1u);
+    let c = shade_glints_light(point, surface, first + 2u);
+    let d = shade_glints_light(point, surface, first + 3u);
+    if REFERENCE {
+        return glint_mean_radiance(surface.material, a.radiance + b.radiance + c.radiance + d.radiance);
+    }
+    let drawn = vec4u(0u, 1u, 2u, 3u) + first < vec4u(shade_glints_count());
+    return glint_four_lights(surface, a, b, c, d, drawn);
+}
+
+fn shade_glints_sky(point: ViewPoint, surface: GlintCountedSurface) -> vec3f {
+    let data = shade_environment_data();
+    let chances = glint_chances(data, shade_environment_point(point, surface.facets));
+    if REFERENCE {
+        return glint_mean_radiance(surface.material, chances.smooth_radiance) * scene.environment_gain;
+    }
+    let drawn = glint_environment_draw(data, chances, surface.facets, glint_sky_words(surface, data.levels));
+    return glint_sky_radiance(surface, drawn, chances.smooth_radiance, chances.moments) * scene.environment_gain;
+}
+
+fn shade_lights(point: ViewPoint, random: vec2f) -> vec3f {
+    let surface = shade_glints_surface(point);
+    glint_large_counts = false;
+    var radiance = vec3f(0.0);
+    if shade_glints_count() > 0u {
+        radiance = shade_glints_four(point, surface, 0u);
+    }
+    if shade_glints_count() > 4u {
+        radiance += shade_glints_four(point, surface, 4u);
+    }
+    if (LIGHTS & VIEW_LIGHT_ENVIRONMENT) != 0u {
+        radiance += shade_glints_sky(point, surface);
+    }
+    return radiance;
+}
+
+fn shade_lod(point: ViewPoint) -> f32 {
+    return glint_footprint_box(point.d_dx, point.d_dy).lod;
+}
