@@ -109,6 +109,16 @@ pub fn positive(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected a number above 0".into())
 }
 
+/// Roughness along both axes: one number above 0 for both, or two.
+pub fn roughness_pair(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Result<Vec<f64>, String> = text.split(',').map(|part| positive(part.trim())).collect();
+    match numbers.as_deref() {
+        Ok([both]) => Ok([*both; 2]),
+        Ok([first, second]) => Ok([*first, *second]),
+        _ => Err("expected one number above 0, or two, as in 0.3 or 0.4,0.1".into()),
+    }
+}
+
 /// A finite number other than 0.
 pub fn non_zero(text: &str) -> Result<f32, String> {
     let number = text.parse::<f32>().ok().filter(|v| v.is_finite() && *v != 0.0);

@@ -101,6 +101,14 @@ fn maps_and_environments_take_their_flags() {
         ("light.glintpack", &[], &["--lobes", "0", "--alpha", "0.4"]),
         ("layered.glintpack", &["--texels-per-unit", "64"], &["--texels-per-unit", "64", "--swap-layers"]),
         ("sky.glintpack", &["--shape", "sphere"], &["--shape", "sphere", "--turn", "90"]),
+        ("facets.glintpack", &["--light", "sun"], &["--light", "sun", "--sun-size", "30"]),
+        ("facets.glintpack", &["--light", "points"], &["--light", "points", "--point-radius", "0.7"]),
+        ("facets.glintpack", &["--light", "sun"], &["--light", "sun", "--facet-spread", "20"]),
+        (
+            "facets.glintpack",
+            &["sky.glintpack", "--light", "environment"],
+            &["sky.glintpack", "--light", "environment", "--sky-spread", "2"],
+        ),
     ] {
         let changed = difference(&draw(pack, plain), &draw(pack, flags));
         assert!(changed > 0.01, "{pack}: {flags:?} change nothing ({changed})");
@@ -139,7 +147,7 @@ fn the_list_names_what_can_be_shown_and_the_bench_measures_it() {
 fn the_bench_is_data_too() {
     let Some(folder) = folder() else { return };
     let folder = folder.path();
-    let packs = ["dictionary.glintpack", "light.glintpack", "sky.glintpack"];
+    let packs = ["dictionary.glintpack", "light.glintpack", "sky.glintpack", "facets.glintpack"];
     let flags = ["--bench", "--json", "--frames", "1", "--size", "64x36", "--verbose"];
     let measured = view(folder, &[&packs[..], &flags].concat()).ok();
     assert!(measured.stderr.contains("adapter: "), "{}", measured.stderr);
@@ -147,6 +155,9 @@ fn the_bench_is_data_too() {
     check_against("glint-bench.schema.json", &document, "--bench --json");
     assert_eq!(document["size"], serde_json::json!([64, 36]));
     let rows = document["rows"].as_array().unwrap();
+    // Counted facets have a row a lighting.
+    let lightings = rows.iter().filter(|row| row["method"] == "glints" && row["error"].is_null());
+    assert_eq!(lightings.count(), 12);
     for method in ["dictionary", "area-light", "environment"] {
         let of_method: Vec<&Value> = rows.iter().filter(|row| row["method"] == method).collect();
         let from: Vec<&str> = of_method.iter().map(|row| row["from"].as_str().unwrap()).collect();
@@ -176,6 +187,7 @@ fn what_cannot_be_shown_is_refused() {
     refuses(&[], 2, "PACK");
     assert!(view(folder, &["--version"]).ok().stdout.contains("reads 1.x"));
     refuses(&["none.glintpack", "--list"], 3, "none.glintpack");
+    refuses(&["dictionary.glintpack", "--alpha", "0.1,0.2,0.3", "--list"], 2, "--alpha");
     refuses(&["dictionary.glintpack", "--json"], 2, "--bench");
     refuses(&["flakes.png", "--list"], 4, "flakes.png");
     refuses(&["dictionary.glintpack", "--headless", "none/a.png"], 3, "none");

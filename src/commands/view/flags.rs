@@ -147,8 +147,8 @@ pub struct SceneFlags {
 #[command(next_help_heading = "Material")]
 pub struct MaterialFlags {
     /// Roughness α, the same along both axes, or along each
-    #[arg(long, value_name = "A[,B]", value_delimiter = ',', num_args = 1..=2, value_parser = values::positive)]
-    pub alpha: Vec<f64>,
+    #[arg(long, value_name = "A[,B]", value_parser = values::roughness_pair)]
+    pub alpha: Option<[f64; 2]>,
     /// Distribution of slopes that dictionaries and counted facets converge to
     #[arg(long, value_name = "TARGET")]
     pub target: Option<TargetKind>,

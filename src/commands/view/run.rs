@@ -311,8 +311,8 @@ impl LightFlag {
 
 /// What the flags say in place of what the pack says.
 fn apply(flags: &MaterialFlags, material: &mut Material) {
-    if let [first, ..] = flags.alpha[..] {
-        material.alpha = [first as f32, flags.alpha.get(1).copied().unwrap_or(first) as f32];
+    if let Some(alpha) = flags.alpha {
+        material.alpha = alpha.map(|alpha| alpha as f32);
     }
     let set = |to: &mut f32, value: Option<f64>| *to = value.map_or(*to, |value| value as f32);
     set(&mut material.density, flags.density);

@@ -1,6 +1,6 @@
 //! Flags of `glint-bake glints`.
 
-use crate::cli::values::{finite, name_of, not_negative, positive, reflectance, reflectance3};
+use crate::cli::values::{finite, name_of, not_negative, positive, reflectance, reflectance3, roughness_pair};
 use crate::cli::{OptionList, RunFlags};
 use crate::delivery::Delivery;
 use clap::ValueEnum;
@@ -34,8 +34,8 @@ pub struct Args {
     #[arg(long, value_name = "TARGET", default_value = "ggx", help_heading = "Material")]
     pub target: Target,
     /// Roughness α, 0.001 to 1, the same along both axes, or along each
-    #[arg(long, value_name = "A[,B]", value_delimiter = ',', num_args = 1..=2, default_value = "0.3", value_parser = positive, help_heading = "Material")]
-    pub alpha: Vec<f64>,
+    #[arg(long, value_name = "A[,B]", default_value = "0.3", value_parser = roughness_pair, help_heading = "Material")]
+    pub alpha: [f64; 2],
     /// Angle from the tangent to the first axis of roughness, in degrees, -180 to 180
     #[arg(long, value_name = "DEGREES", default_value = "0", allow_hyphen_values = true, value_parser = finite, help_heading = "Material")]
     pub turn: f32,
@@ -83,13 +83,12 @@ pub enum Target {
 impl Args {
     /// Options of the bake.
     pub fn options(&self) -> GlintsOptions {
-        let first = self.alpha[0] as f32;
         GlintsOptions {
             slopes: match self.target {
                 Target::Beckmann => Slopes::Beckmann,
                 Target::Ggx => Slopes::Ggx,
             },
-            alpha: [first, self.alpha.get(1).map_or(first, |second| *second as f32)],
+            alpha: self.alpha.map(|alpha| alpha as f32),
             turn: self.turn.to_radians(),
             f0: self.f0,
             density: self.density as f32,
