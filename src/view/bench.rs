@@ -41,8 +41,10 @@ const FIELD_OF_VIEW: f32 = 0.610_865_24;
 /// A picture that a wall fills, in the light that a method is made for.
 #[derive(Clone, Debug)]
 pub struct Setup {
-    /// How the wall is seen, and by which lights where the method is made for several.
-    pub name: String,
+    /// How the wall is seen.
+    pub name: &'static str,
+    /// The lights that are on.
+    pub lights: &'static str,
     /// The wall.
     pub mesh: Mesh,
     /// The view that is timed, of the method.
@@ -81,8 +83,8 @@ impl Setup {
             let of_base = Subject { material: settings.materials[index], ..base.clone() };
             let baseline = Side { shown: if own { shown.clone() } else { of_base }, reference: own };
             for (place, direction) in places {
-                let name = format!("{place}{}", lighting.name);
-                setups.push(Setup::seen(list, index, &settings, bench, name, direction, baseline.clone()));
+                let seen = Seen { name: place, direction, lights: lighting.name };
+                setups.push(Setup::seen(list, index, &settings, bench, seen, baseline.clone()));
             }
         }
         setups
@@ -93,10 +95,10 @@ impl Setup {
         index: usize,
         settings: &Settings,
         bench: BenchSettings,
-        name: String,
-        direction: Vec3,
+        seen: Seen,
         baseline: Side,
     ) -> Setup {
+        let Seen { name, direction, lights } = seen;
         let (shown, material) = (&list[index], settings.materials[index]);
         let units_per_pixel =
             if shown.method.has_map() { TEXELS_PER_PIXEL / material.texels_per_unit } else { UNITS_PER_PIXEL };
@@ -119,13 +121,20 @@ impl Setup {
             view
         };
         let (view, small) = (view(bench.size), view(bench.error_size));
-        Setup { name, mesh: Mesh::wall(WALL, WALL), view, small, baseline }
+        Setup { name, lights, mesh: Mesh::wall(WALL, WALL), view, small, baseline }
     }
+}
+
+/// Where a wall is seen from, and by which lights.
+struct Seen {
+    name: &'static str,
+    direction: Vec3,
+    lights: &'static str,
 }
 
 /// Lights in which a method is measured.
 struct Lighting {
-    /// What its rows say of it, after where the wall is seen from.
+    /// What its rows say of it.
     name: &'static str,
     kinds: &'static [LightKind],
     /// Points that are on.
@@ -136,23 +145,23 @@ struct Lighting {
 fn lightings(method: Method, has_environment: bool) -> Vec<Lighting> {
     let lighting = |name, kinds, points| Lighting { name, kinds, points };
     if method != Method::Glints {
-        let kinds: &[LightKind] = match method.usual_light() {
-            LightKind::Sun => &[LightKind::Sun],
-            LightKind::Points => &[LightKind::Points],
-            LightKind::Rect => &[LightKind::Rect],
-            LightKind::Environment => &[LightKind::Environment],
+        let usual: (&str, &[LightKind]) = match method.usual_light() {
+            LightKind::Sun => ("sun", &[LightKind::Sun]),
+            LightKind::Points => ("point", &[LightKind::Points]),
+            LightKind::Rect => ("rectangle", &[LightKind::Rect]),
+            LightKind::Environment => ("environment", &[LightKind::Environment]),
         };
-        return vec![lighting("", kinds, 1)];
+        return vec![lighting(usual.0, usual.1, 1)];
     }
     let mut all = vec![
-        lighting(", sun", &[LightKind::Sun], 1),
-        lighting(", sun and point", &[LightKind::Sun, LightKind::Points], 1),
-        lighting(", sun and 3 points", &[LightKind::Sun, LightKind::Points], 3),
-        lighting(", rectangle", &[LightKind::Rect], 1),
+        lighting("sun", &[LightKind::Sun], 1),
+        lighting("sun and point", &[LightKind::Sun, LightKind::Points], 1),
+        lighting("sun and 3 points", &[LightKind::Sun, LightKind::Points], 3),
+        lighting("rectangle", &[LightKind::Rect], 1),
     ];
     if has_environment {
-        all.push(lighting(", environment", &[LightKind::Environment], 1));
-        all.push(lighting(", sun and environment", &[LightKind::Sun, LightKind::Environment], 1));
+        all.push(lighting("environment", &[LightKind::Environment], 1));
+        all.push(lighting("sun and environment", &[LightKind::Sun, LightKind::Environment], 1));
     }
     all
 }
@@ -164,8 +173,10 @@ pub struct BenchRow {
     pub method: &'static str,
     /// Material.
     pub name: String,
-    /// How the wall is seen, and by which lights where the method is made for several.
-    pub view: String,
+    /// How the wall is seen.
+    pub view: &'static str,
+    /// The lights that are on.
+    pub lights: &'static str,
     /// What its time is compared with.
     pub baseline: &'static str,
     /// Median seconds of a frame's passes: the surface and its display.
@@ -245,7 +256,8 @@ pub fn measure(gpu: &Gpu, subjects: &Subjects, setup: &Setup, settings: BenchSet
     Ok(BenchRow {
         method: shown.method.name(),
         name: shown.name.clone(),
-        view: setup.name.clone(),
+        view: setup.name,
+        lights: setup.lights,
         baseline: if baseline.reference { "its smooth form" } else { baseline.shown.method.name() },
         frame: own.frame,
         frame_ratio: own.frame / base.frame,
@@ -319,7 +331,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 /// The rows as a Markdown table.
 pub fn table(rows: &[BenchRow]) -> String {
     let mut text = String::from(
-        "| method | material | seen from | ms a frame | over | ratio | surface alone | look-ups | operations | instructions | bytes | error | noise |\n| --- | --- | --- | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n",
+        "| method | material | seen from | lights | ms a frame | over | ratio | surface alone | look-ups | operations | instructions | bytes | error | noise |\n| --- | --- | --- | --- | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n",
     );
     for row in rows {
         let percent = |part: fn(PictureError) -> f64| {
@@ -327,10 +339,11 @@ pub fn table(rows: &[BenchRow]) -> String {
         };
         let (error, noise) = (percent(|error| error.error), percent(|error| error.noise));
         text.push_str(&format!(
-            "| {} | {} | {} | {:.1} | {} | {:.2} | {:.2} | {:.1} | {:.0} of {:.0} | {} | {} | {error} | {noise} |\n",
+            "| {} | {} | {} | {} | {:.1} | {} | {:.2} | {:.2} | {:.1} | {:.0} of {:.0} | {} | {} | {error} | {noise} |\n",
             row.method,
             row.name,
             row.view,
+            row.lights,
             1e3 * row.frame,
             row.baseline,
             row.frame_ratio,

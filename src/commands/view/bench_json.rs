@@ -33,7 +33,8 @@ struct Bench<'a> {
 struct Row<'a> {
     method: &'static str,
     material: &'a str,
-    from: &'a str,
+    from: &'static str,
+    lights: &'static str,
     baseline: &'static str,
     milliseconds: f64,
     ratio: f64,
@@ -68,7 +69,8 @@ fn row(row: &BenchRow) -> Row<'_> {
     Row {
         method: row.method,
         material: &row.name,
-        from: &row.view,
+        from: row.view,
+        lights: row.lights,
         baseline: row.baseline,
         milliseconds: 1e3 * row.frame,
         ratio: row.frame_ratio,
