@@ -20,10 +20,9 @@ def f32(value):
 # Types of parameters: a name of a number, "bool", "string", ("list", T), ("array", n, T), ("option", T), ("enum", variants), or
 # a dictionary of fields. A variant is its name, or (name, fields).
 NUMBERS = {"u8": "<B", "u16": "<H", "u32": "<I", "u64": "<Q", "f32": "<f", "f64": "<d"}
-WRAP = ("enum", ["Repeat", "Clamp"])
 LEVEL = dict(nodes_x="u32", nodes_y="u32", first_node="u32")
 CELLS = dict(cells_x="u32", cells_y="u32", cell_texels="f32", seed="u64")
-PAIR = ("array", 2, "f32")
+WRAP, PAIR, RGB = ("enum", ["Repeat", "Clamp"]), ("array", 2, "f32"), ("array", 3, "f32")
 LOBES = dict(
     cell_texels="u32", cells_x="u32", cells_y="u32", first_lobe="u32", weight_scale="f32", position_sigma=PAIR,
     residual_sigma=PAIR, jacobian_scale="f32")
@@ -45,9 +44,8 @@ PARAMETERS = {
         marginals="u32", levels="u32", entries="u32", alpha_dict="f64", lobe_std="f64", domain="f64", seed="u64",
         measured=dict(normalisation="f64", mean_l1_first_level="f64", ks_last_level="f64")),
     "GLPP": dict(
-        slopes=("enum", ["Beckmann", "Ggx"]), alpha=PAIR, turn="f32", f0=("array", 3, "f32"), density="f32",
-        relative_area="f32", facet_area="f32", facet_spread="f32", sky_spread="f32", seed="u32",
-        colours=("list", ("array", 3, "f32")), table_mean_error="f64"),
+        slopes=("enum", ["Beckmann", "Ggx"]), alpha=PAIR, turn="f32", f0=RGB, density="f32", relative_area="f32", facet_area="f32",
+        facet_spread="f32", sky_spread="f32", seed="u32", colours=("list", RGB), table_mean_error="f64"),
     "ENPP": dict(
         face_size="u32", per_size="u32", kernel=("enum", ["Ndf", "GgxNl", "GgxSoft"]),
         roughness=("list", "f64"), radiance_scale="f64", levels=("list", "f64"),

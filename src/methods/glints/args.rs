@@ -13,7 +13,7 @@ const EXAMPLES: &str = "\
 Examples:
   glint-bake glints -o flakes.glintpack
   glint-bake glints --alpha 0.15 --density 4e6 --f0 0.6,0.05,0.03 -o car-paint.glintpack
-  glint-bake glints --alpha 0.4 --density 2e5 --colour 1,0.8,0.4 --colour 0.4,0.7,1 -o glitter.glintpack";
+  glint-bake glints --density 2e5 --colour 1,0.8,0.4 --colour 0.4,0.7,1 -o glitter.glintpack";
 
 /// Bake a material of counted facets: procedural glints under every light, without a normal map
 ///
@@ -34,7 +34,7 @@ pub struct Args {
     #[arg(long, value_name = "TARGET", default_value = "ggx", help_heading = "Material")]
     pub target: Target,
     /// Roughness α, 0.001 to 1, the same along both axes, or along each
-    #[arg(long, value_name = "A[,B]", default_value = "0.3", value_parser = roughness_pair, help_heading = "Material")]
+    #[arg(long, value_name = "A[,B]", allow_negative_numbers = true, default_value = "0.3", value_parser = roughness_pair, help_heading = "Material")]
     pub alpha: [f64; 2],
     /// Angle from the tangent to the first axis of roughness, in degrees, -180 to 180
     #[arg(long, value_name = "DEGREES", default_value = "0", allow_hyphen_values = true, value_parser = finite, help_heading = "Material")]
@@ -43,7 +43,7 @@ pub struct Args {
     #[arg(long, value_name = "R,G,B", default_value = "0.95,0.93,0.88", value_parser = reflectance3, help_heading = "Material")]
     pub f0: [f32; 3],
     /// Facets on one surface unit squared of what glints, at most 1e16
-    #[arg(long, value_name = "N", default_value = "1e6", value_parser = positive, help_heading = "Material")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value = "1e6", value_parser = positive, help_heading = "Material")]
     pub density: f64,
     /// Share of the surface that glints, 0 to 1; the rest is smooth
     #[arg(long, value_name = "SHARE", default_value = "1", value_parser = reflectance, help_heading = "Material")]
@@ -52,10 +52,10 @@ pub struct Args {
     ///
     /// The wider, the more facets a light without extent is seen in, and the longer each stays lit when the light or the eye turns. The default is as wide as
     /// the sun.
-    #[arg(long, value_name = "DEGREES", default_value = "0.2665", value_parser = positive, help_heading = "Material")]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, default_value = "0.2665", value_parser = positive, help_heading = "Material")]
     pub facet_spread: f64,
     /// By how much the eye turns, in degrees, until facets under an environment are others, 0 to 180; 0 for never
-    #[arg(long, value_name = "DEGREES", default_value = "0", value_parser = not_negative, help_heading = "Material")]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, default_value = "0", value_parser = not_negative, help_heading = "Material")]
     pub sky_spread: f32,
     /// Colour of facets, linear RGB; may be given up to 256 times, and facets take one of them each
     #[arg(long, value_name = "R,G,B", value_parser = reflectance3, help_heading = "Material")]
