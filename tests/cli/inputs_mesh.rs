@@ -91,6 +91,15 @@ fn other_textures_leave_the_mesh_as_it_was() {
     }
 }
 
+/// Whether two pictures differ by one step of 256 at most, in a thousandth of their numbers: places within a face are interpolated over its
+/// triangles, whose order rounds them otherwise.
+fn nearly_equal(one: &[u8], other: &[u8]) -> bool {
+    let [one, other] = [one, other].map(|bytes| image::load_from_memory(bytes).unwrap().to_rgb8());
+    let steps = || one.as_raw().iter().zip(other.as_raw()).map(|(a, b)| a.abs_diff(*b));
+    let changed = steps().filter(|step| *step > 0).count();
+    one.dimensions() == other.dimensions() && steps().all(|step| step <= 1) && changed * 1000 <= one.as_raw().len()
+}
+
 /// A concave face is drawn as the triangles that it is.
 #[test]
 fn concave_faces_are_their_triangles() {
@@ -106,7 +115,7 @@ fn concave_faces_are_their_triangles() {
     for first in 0..5 {
         let words: Vec<String> = (0..5).map(|k| format!("{}//1", (first + k) % 5 + 1)).collect();
         let (said, picture) = of("face.obj", &format!("f {}\n", words.join(" ")));
-        assert!(picture == triangles.1, "from corner {first}");
+        assert!(nearly_equal(&picture, &triangles.1), "from corner {first}");
         assert!(!said.contains("fan"), "{said}");
     }
     let (said, _) = of("crossed.obj", "f 1//1 4//1 2//1 5//1\n");

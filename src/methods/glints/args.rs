@@ -61,7 +61,7 @@ pub struct Args {
     #[arg(long, value_name = "R,G,B", value_parser = reflectance3, help_heading = "Material")]
     pub colour: Vec<[f32; 3]>,
     /// Surfaces with different seeds have different glints
-    #[arg(long, value_name = "SEED", default_value = "1", help_heading = "Material")]
+    #[arg(long, value_name = "SEED", allow_negative_numbers = true, default_value = "1", help_heading = "Material")]
     pub seed: u32,
     /// Compress the pack's sections with Zstandard
     #[arg(long, help_heading = "Bake")]
