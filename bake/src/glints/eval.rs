@@ -104,6 +104,11 @@ pub struct FacetLight {
     pub state: CellState,
 }
 
+/// No light at all: what stands for the lights that are missing to four.
+pub fn no_light() -> FacetLight {
+    FacetLight { radiance: Vec3::ZERO, chance: 0.0, state: CellState { a: 0, b: 0 } }
+}
+
 /// From the tangent frame to that of the roughness.
 fn turned(turn: Vec2, v: Vec3) -> Vec3 {
     Vec3::new(turn.x * v.x + turn.y * v.y, turn.x * v.y - turn.y * v.x, v.z)

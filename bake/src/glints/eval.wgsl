@@ -3,7 +3,7 @@
 // and the light's smooth reflection is multiplied by n / (N p). Twin of glint-bake-core glints/eval.rs, where deviations are derived.
 //
 // A pixel: glint_counted_surface once; glint_cone_light for each sun or point, glint_rect_facets for each rectangle; glint_four_lights of
-// four of them (GLINT_NO_LIGHT where there are fewer). A sky: glint_environment_draw of environment::eval with
+// four of them (glint_no_light where there are fewer). A sky: glint_environment_draw of environment::eval with
 // glint_sky_words.
 //
 // Accessors that the including program defines, besides those of area_light/rect.wgsl:
@@ -80,8 +80,10 @@ struct GlintFacetLight {
     state: GlintCellState,
 }
 
-// No light at all.
-const GLINT_NO_LIGHT: GlintFacetLight = GlintFacetLight(vec3f(0.0), 0.0, GlintCellState(0u, 0u));
+// No light at all. A function, since a constant of nested structs does not come through translation to HLSL.
+fn glint_no_light() -> GlintFacetLight {
+    return GlintFacetLight(vec3f(0.0), 0.0, GlintCellState(0u, 0u));
+}
 
 // From the tangent frame to that of the roughness.
 fn glint_turned(turn: vec2f, v: vec3f) -> vec3f {
@@ -219,7 +221,7 @@ fn glint_facet_radiance(surface: GlintCountedSurface, light: GlintFacetLight, ra
     return light.radiance * (colour * (share * ratio) + (1.0 - share));
 }
 
-// Radiance towards the eye from up to four lights, linear RGB: those that are `drawn`, GLINT_NO_LIGHT the others.
+// Radiance towards the eye from up to four lights, linear RGB: those that are `drawn`, glint_no_light the others.
 fn glint_four_lights(
     surface: GlintCountedSurface,
     a: GlintFacetLight,

@@ -63,11 +63,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let rect_light = GlintRectLight(q.corner_0, q.corner_1, q.corner_2, q.corner_3, vec3f(2.0), 1u);
     let rect = glint_rect_facets(surface, rect_light);
     let drawn = vec4<bool>(true, true, false, false);
-    let ratios = glint_hit_ratios(surface, cone, rect, GLINT_NO_LIGHT, GLINT_NO_LIGHT, drawn);
+    let ratios = glint_hit_ratios(surface, cone, rect, glint_no_light(), glint_no_light(), drawn);
     let plane = glint_facing_plane(vec3f(q.position, q.density), vec3f(q.d_dx, 0.0), vec3f(q.d_dy, 0.1), q.view, q.seed);
     answers[id.x] = GlintsAnswer(
         cone.radiance, cone.chance, rect.radiance, rect.chance,
-        glint_four_lights(surface, cone, rect, GLINT_NO_LIGHT, GLINT_NO_LIGHT, drawn), surface.facets, ratios.xy, surface.whole,
+        glint_four_lights(surface, cone, rect, glint_no_light(), glint_no_light(), drawn), surface.facets, ratios.xy, surface.whole,
         glint_microfacet_area(GlintSmoothSurface(q.alpha, q.normal_target)),
         vec2u(surface.cell.a, surface.cell.b), vec2u(cone.state.a, cone.state.b), vec2u(rect.state.a, rect.state.b), plane.seed, 0u,
         glint_sky_words(surface, 4u).a,

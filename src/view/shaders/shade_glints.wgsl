@@ -70,7 +70,7 @@ fn shade_glints_rect(point: ViewPoint, surface: GlintCountedSurface) -> GlintFac
 // Light `number` of those that are drawn: the directional light, the points, the rectangle. What is on is known when a pipeline is made.
 fn shade_glints_light(point: ViewPoint, surface: GlintCountedSurface, number: u32) -> GlintFacetLight {
     if number >= shade_glints_count() {
-        return GLINT_NO_LIGHT;
+        return glint_no_light();
     }
     var index = number;
     if (LIGHTS & VIEW_LIGHT_SUN) != 0u {
