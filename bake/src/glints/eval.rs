@@ -23,7 +23,7 @@ use crate::counting::query::{
     angle_state, cell_bits, cell_words, facet_cell, footprint_area, footprint_box, footprint_facets,
 };
 use crate::hash::CellState;
-use crate::microfacet::{SmoothSurface, microfacet_lambda, microfacet_masked, microfacet_ndf};
+use crate::microfacet::{GGX, SmoothSurface, microfacet_lambda, microfacet_masked, microfacet_ndf};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
@@ -139,9 +139,10 @@ fn seen_solid_angle(material: CountedMaterial, solid_angle: f32) -> f32 {
 /// `cos_h`.
 ///
 /// A cone of half angle γ is reflected by normals in an ellipse: γ / 2 along the plane of incidence and γ / (2 h·o) across. GGX's mean over
-/// a disk of radius r around its peak is the peak of roughness √(α² + r²): 1 / (π (α² + r²)).
+/// a disk of radius r around its peak is the peak of roughness √(α² + r²): 1 / (π (α² + r²)); Beckmann's, a Gaussian, has the disk's variance more, r² / 2.
 fn seen_surface(smooth: SmoothSurface, view: Vec3, solid_angle: f32, cos_h: f32) -> SmoothSurface {
-    let along = solid_angle * (0.25 / PI);
+    let width = if smooth.normal_target == GGX { 1.0 } else { 0.5 };
+    let along = width * solid_angle * (0.25 / PI);
     let across = along / (cos_h * cos_h).max(LEAST_COSINE);
     let flat = Vec2::new(view.x, view.y);
     let share = flat * flat / flat.dot(flat).max(1e-12);

@@ -115,7 +115,8 @@ fn glint_seen_solid_angle(material: GlintCountedMaterial, solid_angle: f32) -> f
 // The smooth surface whose lobe is as wide as that of facets that see a light of `solid_angle` from `view`, with the half vector's cosine
 // `cos_h`.
 fn glint_seen_surface(smooth_surface: GlintSmoothSurface, view: vec3f, solid_angle: f32, cos_h: f32) -> GlintSmoothSurface {
-    let along = solid_angle * 0.079577472;
+    let width = select(0.5, 1.0, smooth_surface.normal_target == GLINT_MICROFACET_GGX);
+    let along = width * solid_angle * 0.079577472;
     let across = along / max(cos_h * cos_h, GLINT_LEAST_COSINE);
     let share = view.xy * view.xy / max(dot(view.xy, view.xy), 1.0e-12);
     let squares = smooth_surface.alpha * smooth_surface.alpha + vec2f(across) - share * (across - along);
