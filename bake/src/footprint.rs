@@ -27,6 +27,19 @@ pub struct Principal {
     pub minor: f32,
 }
 
+/// Ellipse of a pixel's second moments, in squares of the units of its derivatives; its area is the pixel's over π/4.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelAxes {
+    /// Square of the longer axis.
+    pub major2: f32,
+    /// Square of the shorter one.
+    pub minor2: f32,
+    /// Vector at twice the longer axis's angle, `gap` long.
+    pub difference: Vec2,
+    /// Half the difference of the squares.
+    pub gap: f32,
+}
+
 /// Footprint of a pixel at `mean` whose place moves by `d_dx` and `d_dy` (texels) a pixel along the screen's axes:
 /// σ² (d_dx d_dxᵀ + d_dy d_dyᵀ). `pixel_sigma` is the standard deviation σ of the pixel's filter, in pixels.
 pub fn footprint_of_pixel(mean: Vec2, d_dx: Vec2, d_dy: Vec2, pixel_sigma: f32) -> ShaderFootprint {
@@ -39,6 +52,21 @@ pub fn footprint_of_pixel(mean: Vec2, d_dx: Vec2, d_dy: Vec2, pixel_sigma: f32) 
         xy: dx.x * dx.y + dy.x * dy.y,
         yy: dx.y * dx.y + dy.y * dy.y,
     }
+}
+
+/// Parallelogram of a pixel whose place moves by `d_dx` and `d_dy` a pixel along the screen's axes, as the ellipse of its second moments.
+pub fn pixel_axes(d_dx: Vec2, d_dy: Vec2) -> PixelAxes {
+    let limit = Vec2::splat(1.0e8);
+    let (dx, dy) = (d_dx.clamp(-limit, limit), d_dy.clamp(-limit, limit));
+    let a = dx.x * dx.x + dy.x * dy.x;
+    let b = dx.x * dx.y + dy.x * dy.y;
+    let c = dx.y * dx.y + dy.y * dy.y;
+    let half_difference = 0.5 * (a - c);
+    let gap = (half_difference * half_difference + b * b).sqrt();
+    let major2 = 0.5 * (a + c) + gap;
+    // By the area, which keeps the digits of long pixels.
+    let cross = dx.x * dy.y - dx.y * dy.x;
+    PixelAxes { major2, minor2: cross * cross / major2.max(1.0e-30), difference: Vec2::new(half_difference, b), gap }
 }
 
 /// The leading 11 bits of a number. A product of two such parts is exact; what is left has 13.

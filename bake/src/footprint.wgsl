@@ -18,6 +18,17 @@ struct GlintPrincipal {
     minor: f32,
 }
 
+// Ellipse of a pixel's second moments, in squares of the units of its derivatives.
+struct GlintPixelAxes {
+    // Squares of the longer and the shorter axis.
+    major2: f32,
+    minor2: f32,
+    // Vector at twice the longer axis's angle, `gap` long.
+    difference: vec2f,
+    // Half the difference of the squares.
+    gap: f32,
+}
+
 // Footprint of a pixel at `mean` whose place moves by `d_dx` and `d_dy` (texels) a pixel along the screen's axes:
 // pixel_sigma^2 (d_dx d_dx^T + d_dy d_dy^T). `pixel_sigma` is the standard deviation of the pixel's filter, in pixels.
 fn glint_footprint_of_pixel(mean: vec2f, d_dx: vec2f, d_dy: vec2f, pixel_sigma: f32) -> GlintFootprint {
@@ -30,6 +41,22 @@ fn glint_footprint_of_pixel(mean: vec2f, d_dx: vec2f, d_dy: vec2f, pixel_sigma: 
         dx.x * dx.y + dy.x * dy.y,
         dx.y * dx.y + dy.y * dy.y,
     );
+}
+
+// Parallelogram of a pixel whose place moves by `d_dx` and `d_dy` a pixel along the screen's axes, as the ellipse of its second moments.
+fn glint_pixel_axes(d_dx: vec2f, d_dy: vec2f) -> GlintPixelAxes {
+    let limit = vec2f(1.0e8);
+    let dx = clamp(d_dx, -limit, limit);
+    let dy = clamp(d_dy, -limit, limit);
+    let a = dx.x * dx.x + dy.x * dy.x;
+    let b = dx.x * dx.y + dy.x * dy.y;
+    let c = dx.y * dx.y + dy.y * dy.y;
+    let half_difference = 0.5 * (a - c);
+    let gap = sqrt(half_difference * half_difference + b * b);
+    let major2 = 0.5 * (a + c) + gap;
+    // By the area, which keeps the digits of long pixels.
+    let cross = dx.x * dy.y - dx.y * dy.x;
+    return GlintPixelAxes(major2, cross * cross / max(major2, 1.0e-30), vec2f(half_difference, b), gap);
 }
 
 // The leading 11 bits of a number. A product of two such parts is exact; what is left has 13.

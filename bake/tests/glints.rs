@@ -4,11 +4,11 @@ use glam::{DVec3, Vec2, Vec3};
 use glint_bake_core::area_light::baked::{Tables, decode_tables};
 use glint_bake_core::area_light::rect::RectLight;
 use glint_bake_core::glints::eval::{
-    ConeLight, CountedSurface, FacetLight, cone_light, counted_surface, four_lights, hit_ratios, rect_facets, sky_words,
+    ConeLight, CountedSurface, FacetLight, cone_light, counted_surface, four_lights, hit_ratios, no_light, rect_facets,
+    sky_words,
 };
 use glint_bake_core::glints::reference::{ExplicitFacets, ReferenceSurface, cone_half_angle};
 use glint_bake_core::glints::{CountedFacets, GlintsOptions, bake};
-use glint_bake_core::hash::CellState;
 use glint_bake_core::microfacet::{microfacet_area, microfacet_cosine};
 use glint_bake_core::progress::Silent;
 use glint_bake_core::rng::{ItemRng, Purpose};
@@ -17,8 +17,6 @@ use std::f64::consts::PI;
 
 /// Solid angle of the sun's disk, half a degree wide.
 const SUN: f32 = 6.8e-5;
-/// A light that is not there.
-const DARK: FacetLight = FacetLight { radiance: Vec3::ZERO, chance: 0.0, state: CellState { a: 0, b: 0 } };
 
 fn options(slopes: Slopes, alpha: [f32; 2]) -> GlintsOptions {
     GlintsOptions { slopes, alpha, facet_spread: 1e-4, ..GlintsOptions::default() }
@@ -97,7 +95,11 @@ fn chances_of_a_sun_are_those_of_the_definition() {
             }
             println!("{slopes:?} {alpha:?}: chances of a sun are off by {worst:.1e}");
             // The cone is nearly as wide as the lobe at a roughness of 0.01 that is seen from the side.
-            let most = if alpha[0] < 0.02 { 0.12 } else { 0.01 };
+            let most = match slopes {
+                _ if alpha[0] > 0.02 => 0.005,
+                Slopes::Ggx => 0.12,
+                Slopes::Beckmann => 0.03,
+            };
             assert!(worst < most, "{slopes:?} {alpha:?}: {worst}");
         }
     }
@@ -168,7 +170,7 @@ fn the_mean_over_seeds_is_the_smooth_surface_for_every_light() {
             let view = towards(40.0, 10.0);
             let lights = |surface| {
                 let suns = [towards(41.0, 190.0), towards(35.0, 200.0)].map(|to| cone_light(surface, sun(to)));
-                [suns[0], suns[1], rect_facets(&tables, surface, &rect_at(towards(40.0, 190.0), 30.0)), DARK]
+                [suns[0], suns[1], rect_facets(&tables, surface, &rect_at(towards(40.0, 190.0), 30.0)), no_light()]
             };
             let surface = |seed| {
                 let mut material = facets.material();
@@ -181,7 +183,7 @@ fn the_mean_over_seeds_is_the_smooth_surface_for_every_light() {
                     let mut all = lights(surface);
                     // The last turn is all three together.
                     if only < 3 {
-                        all = [all[only], DARK, DARK, DARK];
+                        all = [all[only], no_light(), no_light(), no_light()];
                     }
                     f64::from(four_lights(surface, &[], all).y)
                 };
@@ -224,7 +226,11 @@ fn the_variance_over_seeds_is_that_of_independent_facets() {
             (material.density, material.seed) = (density, seed);
             let surface = counted_surface(material, Vec2::ZERO, Vec2::new(0.1, 0.0), Vec2::new(0.0, 0.1), view);
             let light = cone_light(surface, sun(towards(30.0, 180.0)));
-            (hit_ratios(surface, [light, DARK, DARK, DARK])[0], surface.facets * light.chance, light.chance)
+            (
+                hit_ratios(surface, [light, no_light(), no_light(), no_light()])[0],
+                surface.facets * light.chance,
+                light.chance,
+            )
         };
         let (_, expected, chance) = of(0);
         let (mut sum, mut count) = (0.0, 0.0);
@@ -247,7 +253,7 @@ fn shared(facets: &CountedFacets, view: Vec3, lights: [Vec3; 2], solid_angle_sr:
         let place = Vec2::new((k % 141) as f32, (k / 141) as f32) * 3.7;
         let surface = pixel(facets, place, view);
         let [a, b] = lights.map(|direction| cone_light(surface, ConeLight { solid_angle_sr, ..sun(direction) }));
-        let [x, y, ..] = hit_ratios(surface, [a, b, DARK, DARK]).map(f64::from);
+        let [x, y, ..] = hit_ratios(surface, [a, b, no_light(), no_light()]).map(f64::from);
         for (sum, value) in sums.iter_mut().zip([x, y, x * x, y * y, x * y]) {
             *sum += value / f64::from(PLACES);
         }
@@ -298,7 +304,7 @@ fn facets_live_as_long_as_explicit_ones_under_a_turning_light() {
             println!(
                 "{angle}°, turned by {share} of the spread, azimuth {azimuth}: correlation {found:.3}, explicit {exact:.3}"
             );
-            assert!((found - exact).abs() < 0.1, "{angle} {share} {azimuth}: {found} {exact}");
+            assert!((found - exact).abs() < 0.06, "{angle} {share} {azimuth}: {found} {exact}");
         }
     }
 }
@@ -331,7 +337,7 @@ fn every_hard_case_gives_a_finite_answer() {
                         material.density = density;
                         for (dx, dy) in [(Vec2::X, Vec2::Y), (Vec2::ZERO, Vec2::ZERO), (Vec2::X * 1e9, Vec2::X * 1e9)] {
                             let surface = counted_surface(material, Vec2::splat(1e9), dx, dy, view);
-                            let mut lights = [DARK; 4];
+                            let mut lights = [no_light(); 4];
                             for (light, solid_angle_sr) in lights.iter_mut().zip([0.0, SUN, 7.0]) {
                                 *light = cone_light(surface, ConeLight { solid_angle_sr, ..sun(direction) });
                             }

@@ -153,7 +153,7 @@ mod with_viewer {
              boxes and of one for each cell | a lobe: a 2 × 2 inverse, two exponentials",
         );
         table.row(
-            "environment | smooth: a cube and a table; glints: one cube more for every four levels | four hashes for a word; a \
+            "environment | smooth: a cube and a table; glints: one cube more for every four levels | a hash for a word; a \
              word and a binomial draw for each level but one, and one word more",
         );
         table.row(

@@ -2,7 +2,7 @@
 
 use super::baked::{AreaLightMaterial, LtcTables, SIZE};
 use crate::error::{BakeError, Result};
-use crate::pack_access::{bytes, names_with, parameters};
+use crate::pack_access::{bytes, names_with, parameters, records};
 use glint_formats::area_light::{
     AreaLightParams, INVERSE, NORMALS, PARAMS, ROUGHNESS, TABLE_VK_FORMAT, TERMS, UNIFORM,
 };
@@ -16,7 +16,6 @@ pub fn to_sections(name: &str, material: &AreaLightMaterial, codec: Codec) -> Ve
     let texture =
         |vk_format, width, height, mips| Resource::Texture { vk_format, width, height, layers: 1, faces: 1, mips };
     let map = texture(params.storage.vk_format(), width, height, full_mip_count(width, height));
-    let table = texture(TABLE_VK_FORMAT, SIZE as u32, SIZE as u32, 1);
     let mut sections = vec![
         Section::parameters(PARAMS, name, params),
         Section::buffer(UNIFORM, name, &[params.uniform()]),
@@ -25,14 +24,39 @@ pub fn to_sections(name: &str, material: &AreaLightMaterial, codec: Codec) -> Ve
     if params.anisotropic {
         sections.push(Section::texture(ROUGHNESS, name, map, material.roughness.clone()));
     }
-    for (kind, texels) in [(INVERSE, &material.tables.inverse), (TERMS, &material.tables.terms)] {
-        let payload = texels.as_flattened().iter().flat_map(|bits| bits.to_le_bytes()).collect();
-        sections.push(Section::texture(kind, name, table, payload));
-    }
+    sections.extend(table_sections([INVERSE, TERMS], name, &material.tables));
     for section in &mut sections {
         section.codec = codec;
     }
     sections
+}
+
+/// The LTC tables under `name`, as sections of these kinds: the inverse matrices, then the terms.
+pub fn table_sections(kinds: [FourCc; 2], name: &str, tables: &LtcTables) -> [Section; 2] {
+    let side = SIZE as u32;
+    let table =
+        Resource::Texture { vk_format: TABLE_VK_FORMAT, width: side, height: side, layers: 1, faces: 1, mips: 1 };
+    let section = |kind, texels: &[[u16; 4]]| {
+        let payload = texels.as_flattened().iter().flat_map(|bits| bits.to_le_bytes()).collect();
+        Section::texture(kind, name, table, payload)
+    };
+    [section(kinds[0], &tables.inverse), section(kinds[1], &tables.terms)]
+}
+
+/// Reads the LTC tables of the material `name` from sections of these kinds.
+///
+/// # Errors
+/// `BadInput` where there are none, or they are damaged.
+pub fn tables_from_pack(pack: &Pack, kinds: [FourCc; 2], name: &str) -> Result<LtcTables> {
+    let table = |kind: FourCc| -> Result<Vec<[u16; 4]>> {
+        let texels: Vec<[u16; 4]> = records(pack, kind, name)?;
+        if texels.len() == SIZE * SIZE {
+            return Ok(texels);
+        }
+        let (expected, found) = (SIZE * SIZE, texels.len());
+        Err(BakeError::BadInput(format!("section {kind} of '{name}': expected {expected} texels, found {found}")))
+    };
+    Ok(LtcTables { inverse: table(kinds[0])?, terms: table(kinds[1])? })
 }
 
 /// Reads the parameters of the material `name`.
@@ -57,15 +81,10 @@ pub fn from_pack(pack: &Pack, name: &str) -> Result<AreaLightMaterial> {
         Err(BakeError::BadInput(format!("section {kind} of '{name}': expected {len} bytes, found {}", found.len())))
     };
     let map_bytes = texels * params.storage.texel_bytes();
-    let table = |kind: FourCc| -> Result<Vec<[u16; 4]>> {
-        let bytes = read(kind, SIZE * SIZE * 8)?;
-        let texel = |b: &[u8]| std::array::from_fn(|k| u16::from_le_bytes([b[2 * k], b[2 * k + 1]]));
-        Ok(bytes.chunks_exact(8).map(texel).collect())
-    };
     Ok(AreaLightMaterial {
         normals: read(NORMALS, map_bytes)?,
         roughness: if params.anisotropic { read(ROUGHNESS, map_bytes)? } else { Vec::new() },
-        tables: LtcTables { inverse: table(INVERSE)?, terms: table(TERMS)? },
+        tables: tables_from_pack(pack, [INVERSE, TERMS], name)?,
         params,
     })
 }

@@ -17,6 +17,7 @@
 //! - Surfaces without uv are seen along the axis that their normal is near to, decided patch by patch ([`facing_plane`]).
 
 use super::eval::{MAX_LEVELS, unit_from_bits};
+use crate::footprint::pixel_axes;
 use crate::hash::{CellState, mix_bits};
 use glam::{IVec2, IVec3, Vec2, Vec3};
 
@@ -87,22 +88,15 @@ fn quick_log2(x: f32) -> f32 {
 /// Box of the pixel whose place changes by `d_dx` and `d_dy`: area, length and direction are those of the pixel's parallelogram, up to
 /// 64 : 1, beyond which it is wider.
 pub fn footprint_box(d_dx: Vec2, d_dy: Vec2) -> FootprintBox {
-    let limit = Vec2::splat(LONGEST);
-    let (dx, dy) = (d_dx.clamp(-limit, limit), d_dy.clamp(-limit, limit));
-    // Second moments, whose larger root is the longer edge's square.
-    let a = dx.x * dx.x + dy.x * dy.x;
-    let b = dx.x * dx.y + dy.x * dy.y;
-    let c = dx.y * dx.y + dy.y * dy.y;
-    let half_difference = 0.5 * (a - c);
-    let gap = (half_difference * half_difference + b * b).sqrt();
-    let major2 = (0.5 * (a + c) + gap).max(1e-14);
-    let cross = dx.x * dy.y - dx.y * dy.x;
-    let minor2 = (cross * cross / major2).max(major2 * (1.0 / 4096.0));
+    let axes = pixel_axes(d_dx, d_dy);
+    let major2 = axes.major2.max(1e-14);
+    let minor2 = axes.minor2.max(major2 * (1.0 / 4096.0));
     let lod = (0.5 * quick_log2(minor2)).clamp(-MAX_CELL_LEVEL, MAX_CELL_LEVEL - 1.0);
     let ratio = (0.5 * quick_log2(major2) - lod).clamp(0.0, MAX_RATIO_LEVEL);
-    let across = half_difference.abs() + b.abs();
-    let along = if across > 0.0 { half_difference / across } else { 1.0 };
-    FootprintBox { lod, ratio, turn: if b >= 0.0 { 1.0 - along } else { 3.0 + along } }
+    let twice = axes.difference;
+    let around = twice.x.abs() + twice.y.abs();
+    let along = if around > 0.0 { twice.x / around } else { 1.0 };
+    FootprintBox { lod, ratio, turn: if twice.y >= 0.0 { 1.0 - along } else { 3.0 + along } }
 }
 
 /// Mixes 32 bits in one round, a bijection: enough for the upper bits of sums of random numbers.

@@ -5,6 +5,7 @@
 //
 // Pure functions, no accessors. Places in surface units, those of the density.
 
+#import footprint
 #import hash
 #import counting::eval
 
@@ -63,22 +64,15 @@ fn glint_quick_log2(x: f32) -> f32 {
 // Box of the pixel whose place changes by `d_dx` and `d_dy`: area, length and direction are those of the pixel's parallelogram, up to
 // 64 : 1.
 fn glint_footprint_box(d_dx: vec2f, d_dy: vec2f) -> GlintFootprintBox {
-    let limit = vec2f(GLINT_LONGEST);
-    let dx = clamp(d_dx, -limit, limit);
-    let dy = clamp(d_dy, -limit, limit);
-    let a = dx.x * dx.x + dy.x * dy.x;
-    let b = dx.x * dx.y + dy.x * dy.y;
-    let c = dx.y * dx.y + dy.y * dy.y;
-    let half_difference = 0.5 * (a - c);
-    let gap = sqrt(half_difference * half_difference + b * b);
-    let major2 = max(0.5 * (a + c) + gap, 1.0e-14);
-    let cross = dx.x * dy.y - dx.y * dy.x;
-    let minor2 = max(cross * cross / major2, major2 * (1.0 / 4096.0));
+    let axes = glint_pixel_axes(d_dx, d_dy);
+    let major2 = max(axes.major2, 1.0e-14);
+    let minor2 = max(axes.minor2, major2 * (1.0 / 4096.0));
     let lod = clamp(0.5 * glint_quick_log2(minor2), -GLINT_MAX_CELL_LEVEL, GLINT_MAX_CELL_LEVEL - 1.0);
     let ratio = clamp(0.5 * glint_quick_log2(major2) - lod, 0.0, GLINT_MAX_RATIO_LEVEL);
-    let across = abs(half_difference) + abs(b);
-    let along = select(1.0, half_difference / across, across > 0.0);
-    return GlintFootprintBox(lod, ratio, select(3.0 + along, 1.0 - along, b >= 0.0));
+    let twice = axes.difference;
+    let around = abs(twice.x) + abs(twice.y);
+    let along = select(1.0, twice.x / around, around > 0.0);
+    return GlintFootprintBox(lod, ratio, select(3.0 + along, 1.0 - along, twice.y >= 0.0));
 }
 
 // Mixes 32 bits in one round, a bijection: enough for the upper bits of sums of random numbers.

@@ -30,6 +30,7 @@
 
 use super::baked::Tables;
 use crate::brdf::{facet_brdf, half_vector, normal_to_slope, sdf_to_ndf};
+use crate::footprint::pixel_axes;
 use crate::hash::{CellState, cell_state_in_row, draw_bits, draw_uniform, row_key};
 use glam::{IVec2, Vec2, Vec3};
 
@@ -183,18 +184,8 @@ pub struct PatchBrdf {
 /// grows until the axes are at most `max_anisotropy` (1 to [`MAX_ANISOTROPY`]) apart, so the pixel is blurred rather
 /// than cut.
 pub fn pixel_footprint(d_dx: Vec2, d_dy: Vec2, max_anisotropy: f32) -> PixelFootprint {
-    // Far beyond what the coarsest level can tell apart, and its fourth power is still a finite float.
-    let limit = 1.0e8;
-    let dx = Vec2::new(d_dx.x.clamp(-limit, limit), d_dx.y.clamp(-limit, limit));
-    let dy = Vec2::new(d_dy.x.clamp(-limit, limit), d_dy.y.clamp(-limit, limit));
-    let a = dx.x * dx.x + dy.x * dy.x;
-    let b = dx.x * dx.y + dy.x * dy.y;
-    let c = dx.y * dx.y + dy.y * dy.y;
-    let half_difference = 0.5 * (a - c);
-    let half_gap = (half_difference * half_difference + b * b).sqrt();
-    let mut major2 = 0.5 * (a + c) + half_gap;
-    let cross = dx.x * dy.y - dx.y * dy.x;
-    let mut minor2 = cross * cross / major2.max(1.0e-30);
+    let axes = pixel_axes(d_dx, d_dy);
+    let (mut major2, mut minor2) = (axes.major2, axes.minor2);
     let ratio = max_anisotropy.clamp(1.0, MAX_ANISOTROPY);
     minor2 = minor2.max(major2 / (ratio * ratio)).min(major2);
 
@@ -203,8 +194,8 @@ pub fn pixel_footprint(d_dx: Vec2, d_dy: Vec2, max_anisotropy: f32) -> PixelFoot
     major2 *= shrink;
     minor2 *= shrink;
     let mut direction = Vec2::ZERO;
-    if half_gap > 0.0 {
-        direction = Vec2::new(half_difference / half_gap, b / half_gap);
+    if axes.gap > 0.0 {
+        direction = axes.difference / axes.gap;
     }
     PixelFootprint {
         major2: PIXEL_RADIUS2 * major2,

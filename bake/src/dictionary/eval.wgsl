@@ -9,6 +9,7 @@
 //   fn glint_dictionary_colour(index: u32) -> vec3f          glint colour, linear RGB; called only if material.colours > 0
 
 #import brdf
+#import footprint
 #import hash
 
 const GLINT_TARGET_BECKMANN: u32 = 0u;
@@ -153,17 +154,9 @@ struct GlintPatchBrdf {
 
 // Footprint of the derivatives of the surface position along the screen axes, in cells of level 0 a pixel.
 fn glint_pixel_footprint(d_dx: vec2f, d_dy: vec2f, max_anisotropy: f32) -> GlintPixelFootprint {
-    let limit = vec2f(1.0e8);
-    let dx = clamp(d_dx, -limit, limit);
-    let dy = clamp(d_dy, -limit, limit);
-    let a = dx.x * dx.x + dy.x * dy.x;
-    let b = dx.x * dx.y + dy.x * dy.y;
-    let c = dx.y * dx.y + dy.y * dy.y;
-    let half_difference = 0.5 * (a - c);
-    let half_gap = sqrt(half_difference * half_difference + b * b);
-    var major2 = 0.5 * (a + c) + half_gap;
-    let cross = dx.x * dy.y - dx.y * dy.x;
-    var minor2 = cross * cross / max(major2, 1.0e-30);
+    let axes = glint_pixel_axes(d_dx, d_dy);
+    var major2 = axes.major2;
+    var minor2 = axes.minor2;
     let ratio = clamp(max_anisotropy, 1.0, GLINT_MAX_ANISOTROPY);
     minor2 = min(max(minor2, major2 / (ratio * ratio)), major2);
 
@@ -172,8 +165,8 @@ fn glint_pixel_footprint(d_dx: vec2f, d_dy: vec2f, max_anisotropy: f32) -> Glint
     major2 *= shrink;
     minor2 *= shrink;
     var direction = vec2f(0.0);
-    if half_gap > 0.0 {
-        direction = vec2f(half_difference / half_gap, b / half_gap);
+    if axes.gap > 0.0 {
+        direction = axes.difference / axes.gap;
     }
     return GlintPixelFootprint(
         GLINT_PIXEL_RADIUS2 * major2,

@@ -138,7 +138,7 @@ fn visible_arc(cos_o: f64, sin_o: f64, cos_h: f64, sin_h: f64) -> f64 {
 }
 
 /// Smith's height-correlated masking and shadowing.
-fn masking(cos_o: f64, cos_i: f64, a: f64) -> f64 {
+pub(super) fn masking(cos_o: f64, cos_i: f64, a: f64) -> f64 {
     let term = |c: f64| (a + (1.0 - a) * c * c).sqrt();
     2.0 * cos_o * cos_i / (cos_o * term(cos_i) + cos_i * term(cos_o))
 }

@@ -13,6 +13,7 @@
 //!
 //! Targets and kernels are summed over rings around the mirror direction, even in ln(1 + t b/a), which both follow.
 
+use super::albedo::masking;
 use super::kernel::Lobe;
 use super::reference::ggx;
 use glam::DVec3;
@@ -146,9 +147,7 @@ fn reflected(normal: DVec3, view: DVec3, light: DVec3, alpha: f64) -> [f64; 2] {
     if cos_i <= 0.0 || oh <= 0.0 {
         return [0.0; 2];
     }
-    let term = |c: f64| (alpha * alpha + (1.0 - alpha * alpha) * c * c).sqrt();
-    let masking = 2.0 * cos_o * cos_i / (cos_o * term(cos_i) + cos_i * term(cos_o));
-    let facet = (F0 + (1.0 - F0) * (1.0 - oh).powi(5)) * masking * oh;
+    let facet = (F0 + (1.0 - F0) * (1.0 - oh).powi(5)) * masking(cos_o, cos_i, alpha * alpha) * oh;
     let facets = ggx(normal.dot(half), alpha) / oh;
     [facets * facet, facets * facet * facet]
 }

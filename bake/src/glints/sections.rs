@@ -1,28 +1,21 @@
 //! A material of counted facets as sections of a pack, and back.
 
 use super::baked::CountedFacets;
-use crate::area_light::baked::{LtcTables, SIZE};
-use crate::error::{BakeError, Result};
-use crate::pack_access::{names_with, parameters, records};
-use glint_formats::area_light::TABLE_VK_FORMAT;
+use crate::area_light::sections::{table_sections, tables_from_pack};
+use crate::error::Result;
+use crate::pack_access::{names_with, parameters};
 use glint_formats::glints::{COLOURS, GlintsParams, INVERSE, PARAMS, TERMS, UNIFORM};
-use glint_formats::{Codec, FourCc, Pack, Resource, Section};
+use glint_formats::{Codec, Pack, Section};
 
 /// The sections of a material under `name`, all compressed when `codec` says so.
 pub fn to_sections(name: &str, facets: &CountedFacets, codec: Codec) -> Vec<Section> {
-    let side = SIZE as u32;
-    let table =
-        Resource::Texture { vk_format: TABLE_VK_FORMAT, width: side, height: side, layers: 1, faces: 1, mips: 1 };
     let params = &facets.params;
     let mut sections = vec![
         Section::parameters(PARAMS, name, params),
         Section::buffer(UNIFORM, name, &[params.uniform()]),
         Section::buffer(COLOURS, name, &params.palette()),
     ];
-    for (kind, texels) in [(INVERSE, &facets.tables.inverse), (TERMS, &facets.tables.terms)] {
-        let payload = texels.as_flattened().iter().flat_map(|bits| bits.to_le_bytes()).collect();
-        sections.push(Section::texture(kind, name, table, payload));
-    }
+    sections.extend(table_sections([INVERSE, TERMS], name, &facets.tables));
     for section in &mut sections {
         section.codec = codec;
     }
@@ -39,15 +32,7 @@ pub fn params(pack: &Pack, name: &str) -> Result<GlintsParams> {
 
 /// Reads the material `name`. The pack must have passed verification; errors name what is missing or damaged.
 pub fn from_pack(pack: &Pack, name: &str) -> Result<CountedFacets> {
-    let table = |kind: FourCc| -> Result<Vec<[u16; 4]>> {
-        let texels: Vec<[u16; 4]> = records(pack, kind, name)?;
-        if texels.len() == SIZE * SIZE {
-            return Ok(texels);
-        }
-        let message = format!("section {kind} of '{name}': expected {} texels, found {}", SIZE * SIZE, texels.len());
-        Err(BakeError::BadInput(message))
-    };
-    let tables = LtcTables { inverse: table(INVERSE)?, terms: table(TERMS)? };
+    let tables = tables_from_pack(pack, [INVERSE, TERMS], name)?;
     Ok(CountedFacets { params: params(pack, name)?, tables })
 }
 
@@ -59,6 +44,7 @@ pub fn materials(pack: &Pack) -> Vec<&str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::BakeError;
     use crate::glints::{GlintsOptions, bake};
     use crate::progress::Silent;
     use glint_formats::{Limits, PackBuilder};

@@ -27,23 +27,21 @@ fn svg(name: &str, facets: &CountedFacets) -> String {
         };
         (0..=DECADES * STEPS).map(point).collect()
     };
-    let panel = |title: &str, label: &str, range, value| Panel {
-        title: title.to_owned(),
-        x: Axis::logarithmic("edge of a pixel, units", (1e-5, 10.0)),
-        y: Axis::logarithmic(label, range),
-        series: vec![
-            Series::line("ahead", Colour::Sky, curve(0.0, value)),
-            Series::line("60°", Colour::Vermilion, curve(60.0, value)),
-        ],
+    let panel = |title: &str, label: &str, value| {
+        let (ahead, aside) = (curve(0.0, value), curve(60.0, value));
+        let values = ahead.iter().chain(&aside).map(|(_, value)| *value);
+        Panel {
+            title: title.to_owned(),
+            x: Axis::logarithmic("edge of a pixel, units", (1e-5, 10.0)),
+            y: Axis::powers_around(label, values),
+            series: vec![Series::line("ahead", Colour::Sky, ahead), Series::line("60°", Colour::Vermilion, aside)],
+        }
     };
     let hits = |hits: f64, _: f64| hits;
     let contrast = |hits: f64, chance: f64| ((1.0 - chance) / hits).sqrt();
     Figure {
         title: format!("{name}: facets that reflect a sun in a pixel, and their contrast"),
-        panels: vec![
-            panel("facets lit", "facets", (1e-6, 1e6), hits),
-            panel("standard deviation over mean", "contrast", (1e-3, 1e3), contrast),
-        ],
+        panels: vec![panel("facets lit", "facets", hits), panel("standard deviation over mean", "contrast", contrast)],
         columns: 2,
         panel_size: (320, 220),
     }

@@ -71,6 +71,7 @@ const OWN: &[Shader] = &[
     own!("shade_lobes"),
     own!("shade_surface"),
     own!("shade_rect_points"),
+    own!("shade_rect_light"),
     own!("shade_mirror"),
     own!("shade_textures_brdf"),
     own!("shade_textures"),

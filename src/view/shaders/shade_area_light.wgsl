@@ -4,6 +4,7 @@
 
 #import view_scene
 #import bind_area_light_sampler
+#import shade_rect_light
 #import ggx
 #import hash
 
@@ -21,18 +22,6 @@ fn shade_area_light_footprint(point: ViewPoint) -> f32 {
 fn shade_area_light_surface(point: ViewPoint, directional: bool) -> GlintAreaLightSurface {
     let position = point.uv * material.texels_per_unit;
     return glint_area_light_fetch(area_light_maps, position, shade_area_light_footprint(point), directional);
-}
-
-// The scene's rectangle relative to the point, in its tangent frame.
-fn shade_area_light_rect(point: ViewPoint) -> GlintRectLight {
-    return GlintRectLight(
-        view_to_tangent(point, scene.rect[0].xyz - point.position),
-        view_to_tangent(point, scene.rect[1].xyz - point.position),
-        view_to_tangent(point, scene.rect[2].xyz - point.position),
-        view_to_tangent(point, scene.rect[3].xyz - point.position),
-        scene.rect_radiance,
-        scene.rect_two_sided,
-    );
 }
 
 fn shade_reflect(point: ViewPoint, light: vec3f) -> vec3f {
@@ -58,7 +47,7 @@ fn shade_reference(point: ViewPoint, light: vec3f, random: vec2f) -> vec3f {
 // One place of the footprint and one of the light, drawn by area.
 fn shade_area_light_rect_sample(point: ViewPoint) -> vec3f {
     let state = glint_cell_state(bitcast<u32>(point.uv.x), bitcast<u32>(point.uv.y), scene.frame);
-    let light = shade_area_light_rect(point);
+    let light = shade_rect_light(point);
     let u = light.corner_1 - light.corner_0;
     let v = light.corner_3 - light.corner_0;
     let to_light = light.corner_0 + u * glint_draw_uniform(state, 2u) + v * glint_draw_uniform(state, 3u);
@@ -76,7 +65,7 @@ fn shade_rect(point: ViewPoint) -> vec3f {
     if REFERENCE {
         return shade_area_light_rect_sample(point);
     }
-    let light = shade_area_light_rect(point);
+    let light = shade_rect_light(point);
     if AREA_LIGHT_DIRECTIONAL {
         let surface = shade_area_light_surface(point, material.lobes > 0u);
         return glint_surface_radiance(surface, material.alpha.x, point.view, material.f0, light, material.lobes);

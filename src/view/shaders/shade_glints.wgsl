@@ -4,6 +4,7 @@
 #import shade_environment_levels
 #import environment::eval
 #import bind_glints
+#import shade_rect_light
 
 // Points that are on, besides the directional light.
 override GLINTS_POINTS: u32 = 0u;
@@ -55,18 +56,6 @@ fn shade_glints_point(point: ViewPoint, surface: GlintCountedSurface, index: u32
     return glint_cone_light(surface, GlintConeLight(direction, light.intensity / distance2, solid_angle));
 }
 
-fn shade_glints_rect(point: ViewPoint, surface: GlintCountedSurface) -> GlintFacetLight {
-    let light = GlintRectLight(
-        view_to_tangent(point, scene.rect[0].xyz - point.position),
-        view_to_tangent(point, scene.rect[1].xyz - point.position),
-        view_to_tangent(point, scene.rect[2].xyz - point.position),
-        view_to_tangent(point, scene.rect[3].xyz - point.position),
-        scene.rect_radiance,
-        scene.rect_two_sided,
-    );
-    return glint_rect_facets(surface, light);
-}
-
 // Light `number` of those that are drawn: the directional light, the points, the rectangle. What is on is known when a pipeline is made.
 fn shade_glints_light(point: ViewPoint, surface: GlintCountedSurface, number: u32) -> GlintFacetLight {
     if number >= shade_glints_count() {
@@ -82,7 +71,7 @@ fn shade_glints_light(point: ViewPoint, surface: GlintCountedSurface, number: u3
     if index < GLINTS_POINTS {
         return shade_glints_point(point, surface, index);
     }
-    return shade_glints_rect(point, surface);
+    return glint_rect_facets(surface, shade_rect_light(point));
 }
 
 fn shade_glints_four(point: ViewPoint, surface: GlintCountedSurface, first: u32) -> vec3f {

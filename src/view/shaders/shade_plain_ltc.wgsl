@@ -3,6 +3,7 @@
 
 #import view_scene
 #import bind_area_light_sampler
+#import shade_rect_light
 #import ggx
 
 fn shade_plain_ltc_level(point: ViewPoint) -> f32 {
@@ -25,14 +26,7 @@ fn shade_reference(point: ViewPoint, light: vec3f, random: vec2f) -> vec3f {
 }
 
 fn shade_rect(point: ViewPoint) -> vec3f {
-    let light = GlintRectLight(
-        view_to_tangent(point, scene.rect[0].xyz - point.position),
-        view_to_tangent(point, scene.rect[1].xyz - point.position),
-        view_to_tangent(point, scene.rect[2].xyz - point.position),
-        view_to_tangent(point, scene.rect[3].xyz - point.position),
-        scene.rect_radiance,
-        scene.rect_two_sided,
-    );
+    let light = shade_rect_light(point);
     return glint_isotropic_radiance(shade_plain_ltc_normal(point), material.alpha.x, point.view, material.f0, light);
 }
 

@@ -1,23 +1,23 @@
 // What every program of the viewer binds in group 0, and the point that is shaded.
 //
 // A method gives, in its shade_<method>.wgsl:
-//   fn shade_reflect(point: ViewPoint, light: vec3f) -> vec3f
-//       BRDF times n.l for light from the unit direction `light` (tangent frame), linear RGB
-//   fn shade_reference(point: ViewPoint, light: vec3f, random: vec2f) -> vec3f
-//       the same, as one sample whose mean over `random` in [0, 1)^2 is what the method approximates
 //   fn shade_lights(point: ViewPoint, random: vec2f) -> vec3f
-//       radiance towards the viewer from the directional light, the points, the rectangle and the environment, those that LIGHTS says;
-//       shade_each_light.wgsl does it by the hooks above and below
-//   fn shade_rect(point: ViewPoint) -> vec3f
-//       radiance towards the viewer from the scene's rectangle; shade_rect_points.wgsl does it by samples of shade_reflect
-//   fn shade_environment(point: ViewPoint) -> vec3f
-//       radiance towards the viewer from the environment; shade_environment_smooth.wgsl does it without glints
+//       radiance towards the viewer from the directional light, the points, the rectangle and the environment, those that LIGHTS says
 //   fn shade_room(point: ViewPoint) -> vec3f
 //       radiance towards the viewer from the room of view_sky.wgsl; shade_mirror.wgsl has it for surfaces without materials of their own
 //   fn shade_emitted(point: ViewPoint) -> vec3f
 //       radiance that the surface emits; asked for where EMITS says so
 //   fn shade_lod(point: ViewPoint) -> f32
 //       level of detail that is read, 0 the finest
+// shade_each_light.wgsl gives shade_lights to a method that has, in its place:
+//   fn shade_reflect(point: ViewPoint, light: vec3f) -> vec3f
+//       BRDF times n.l for light from the unit direction `light` (tangent frame), linear RGB
+//   fn shade_reference(point: ViewPoint, light: vec3f, random: vec2f) -> vec3f
+//       the same, as one sample whose mean over `random` in [0, 1)^2 is what the method approximates
+//   fn shade_rect(point: ViewPoint) -> vec3f
+//       radiance towards the viewer from the scene's rectangle; shade_rect_points.wgsl does it by samples of shade_reflect
+//   fn shade_environment(point: ViewPoint) -> vec3f
+//       radiance towards the viewer from the environment; shade_environment_smooth.wgsl does it without glints
 
 const VIEW_LIGHT_SUN: u32 = 1u;
 const VIEW_LIGHT_POINTS: u32 = 2u;

@@ -5,8 +5,9 @@ use glint_shaders::{CHOICES, PASSES, SHADING, compose, modules, program};
 use naga::valid::{ValidationFlags, Validator};
 
 /// Hooks that a shading program must have once, see view_scene.wgsl.
-const HOOKS: [&str; 7] =
-    ["shade_reflect", "shade_reference", "shade_rect", "shade_environment", "shade_room", "shade_emitted", "shade_lod"];
+const HOOKS: [&str; 4] = ["shade_lights", "shade_room", "shade_emitted", "shade_lod"];
+/// Those that a program must have once as well if it takes lights one after the other by shade_each_light.wgsl.
+const HOOKS_OF_EACH_LIGHT: [&str; 4] = ["shade_reflect", "shade_reference", "shade_rect", "shade_environment"];
 
 /// Panics with what is wrong and where.
 fn check(what: &str, source: &str) {
@@ -30,7 +31,9 @@ fn programs_of_the_viewer_are_valid() {
         for choices in all_choices(name) {
             let what = format!("{name} {choices:?}");
             let source = program(name, &choices);
-            for hook in HOOKS {
+            let each_light = source.contains("\nfn view_reflect(");
+            let of_each_light = HOOKS_OF_EACH_LIGHT.iter().filter(|_| each_light);
+            for hook in HOOKS.iter().chain(of_each_light) {
                 assert_eq!(source.matches(&format!("\nfn {hook}(")).count(), 1, "{what}: {hook}");
             }
             check(&what, &source);
