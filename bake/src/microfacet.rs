@@ -14,22 +14,24 @@ pub const BECKMANN: u32 = 0;
 pub const GGX: u32 = 1;
 /// Least cosine of directions to the surface's normal, and roughness.
 const LEAST: f32 = 1e-3;
+/// Least square of the cosine of a direction and the half vector.
+const LEAST_SQUARE: f32 = 1e-4;
 
 /// A smooth microfacet surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SmoothSurface {
-    /// Roughness α along both tangent axes, 1e-3 to 1.
-    pub alpha: Vec2,
+    /// Squares of the roughness α along both tangent axes, 1e-6 to 1.
+    pub alpha2: Vec2,
     /// [`BECKMANN`] or [`GGX`].
     pub normal_target: u32,
 }
 
 /// Distribution of normals D at the unit vector `m` with m.z > 0: ∫ D(m) m.z dm = 1.
 pub fn microfacet_ndf(surface: SmoothSurface, m: Vec3) -> f32 {
-    let v = Vec2::new(m.x, m.y) / surface.alpha;
-    let across = v.dot(v);
+    let v = Vec2::new(m.x, m.y);
+    let across = v.dot(v / surface.alpha2);
     let z2 = (m.z * m.z).max(LEAST * LEAST * LEAST);
-    let area = PI * surface.alpha.x * surface.alpha.y;
+    let area = PI * (surface.alpha2.x * surface.alpha2.y).sqrt();
     if surface.normal_target == GGX {
         let sum = z2 + across;
         1.0 / (area * sum * sum)
@@ -40,16 +42,22 @@ pub fn microfacet_ndf(surface: SmoothSurface, m: Vec3) -> f32 {
 
 /// Λ of Smith's masking for the unit direction `w` with w.z > 0.
 pub fn microfacet_lambda(surface: SmoothSurface, w: Vec3) -> f32 {
-    let v = Vec2::new(w.x, w.y) * surface.alpha;
+    let v = Vec2::new(w.x, w.y);
     let z = w.z.max(LEAST);
     // Square of roughness times tangent, along w.
-    let x = v.dot(v) / (z * z);
+    let x = v.dot(v * surface.alpha2) / (z * z);
     if surface.normal_target == GGX {
         // (√(1 + x) − 1) / 2 without cancellation.
         return 0.5 * x / (1.0 + (1.0 + x).sqrt());
     }
-    let a = 1.0 / x.max(1e-12).sqrt();
-    if a >= 1.6 { 0.0 } else { (1.0 - 1.259 * a + 0.396 * a * a) / (3.535 * a + 2.181 * a * a) }
+    // The rational form of 1 / t, times t² above and below.
+    let t = x.sqrt();
+    if t > 0.625 { (x - 1.259 * t + 0.396) / (3.535 * t + 2.181) } else { 0.0 }
+}
+
+/// Cosine of the unit direction `w` times 1 + 2 Λ of GGX: √(w.z² + α² w.x² + …).
+fn ggx_stretched(surface: SmoothSurface, w: Vec3) -> f32 {
+    (surface.alpha2.x * w.x * w.x + surface.alpha2.y * w.y * w.y + w.z * w.z).sqrt()
 }
 
 /// What of the light that facets reflect from `light` to `view` (unit vectors) leaves the surface, over four times the view's cosine; 0 unless both
@@ -58,8 +66,26 @@ pub fn microfacet_masked(surface: SmoothSurface, view: Vec3, light: Vec3) -> f32
     if !(view.z > 0.0 && light.z > 0.0) {
         return 0.0;
     }
+    if surface.normal_target == GGX {
+        // 1 + Λ + Λ is half the sum of both stretched cosines over the cosines.
+        let sum = light.z * ggx_stretched(surface, view) + view.z * ggx_stretched(surface, light);
+        return 0.5 * light.z / sum.max(f32::MIN_POSITIVE);
+    }
     let masked = 1.0 + microfacet_lambda(surface, view) + microfacet_lambda(surface, light);
     1.0 / (masked * 4.0 * view.z.max(LEAST))
+}
+
+/// The surface whose lobe is as wide as that of one that sees a light of `solid_angle` steradians from `view`, with the half vector's cosine `cos_h`.
+///
+/// A cone of half angle γ is reflected by normals in an ellipse: γ / 2 along the plane of incidence and γ / (2 h·o) across. GGX's mean over
+/// a disk of radius r around its peak is the peak of roughness √(α² + r²): 1 / (π (α² + r²)); Beckmann's, a Gaussian, has the disk's variance more, r² / 2.
+pub fn microfacet_under_cone(surface: SmoothSurface, view: Vec3, solid_angle: f32, cos_h: f32) -> SmoothSurface {
+    let width = if surface.normal_target == GGX { 1.0 } else { 0.5 };
+    let along = width * solid_angle * (0.25 / PI);
+    let across = along / (cos_h * cos_h).max(LEAST_SQUARE);
+    let flat = Vec2::new(view.x, view.y);
+    let share = flat * flat / flat.dot(flat).max(1e-12);
+    SmoothSurface { alpha2: surface.alpha2 + Vec2::splat(across) - share * (across - along), ..surface }
 }
 
 /// BRDF, by colour, times the cosine of `light`, for unit vectors; 0 unless both are above the surface.
@@ -84,8 +110,8 @@ fn round_facet_area(normal_target: u32, alpha2: f32) -> f32 {
 /// every direction, whose square goes as a cosine of twice the angle (Gauss–Chebyshev quadrature).
 pub fn microfacet_area(surface: SmoothSurface) -> f32 {
     const NODES: [f32; 4] = [0.980_785_3, 0.831_469_6, 0.555_570_2, 0.195_090_3];
-    let (x2, y2) = (surface.alpha.x * surface.alpha.x, surface.alpha.y * surface.alpha.y);
-    let (mean, difference) = (0.5 * (x2 + y2), 0.5 * (x2 - y2));
+    let Vec2 { x, y } = surface.alpha2;
+    let (mean, difference) = (0.5 * (x + y), 0.5 * (x - y));
     let mut sum = 0.0;
     for node in NODES {
         sum += round_facet_area(surface.normal_target, mean + difference * node);

@@ -4,10 +4,11 @@ use glam::{DVec3, Vec2, Vec3};
 use glint_bake_core::area_light::baked::{Tables, decode_tables};
 use glint_bake_core::area_light::rect::RectLight;
 use glint_bake_core::glints::eval::{
-    ConeLight, CountedSurface, FacetLight, cone_light, counted_surface, four_lights, hit_ratios, no_light, rect_facets,
-    sky_words,
+    ConeLight, CountedSurface, FacetLight, cone_light, counted_surface, four_lights, hit_ratios, mean_radiance,
+    no_light, rect_facets, sky_words,
 };
 use glint_bake_core::glints::reference::{ExplicitFacets, ReferenceSurface, cone_half_angle};
+use glint_bake_core::glints::sampling::{counted_pdf, counted_sample};
 use glint_bake_core::glints::{CountedFacets, GlintsOptions, bake};
 use glint_bake_core::microfacet::{microfacet_area, microfacet_cosine};
 use glint_bake_core::progress::Silent;
@@ -356,6 +357,198 @@ fn every_hard_case_gives_a_finite_answer() {
                     }
                 }
             }
+        }
+    }
+}
+
+/// Materials with and without layers, of both distributions of slopes.
+fn layered() -> Vec<GlintsOptions> {
+    let of = |slopes, alpha, f0, diffuse, coat| GlintsOptions {
+        f0: [f0; 3],
+        diffuse: [diffuse; 3],
+        coat,
+        coat_alpha: 0.2,
+        turn: 0.7,
+        ..options(slopes, alpha)
+    };
+    vec![
+        of(Slopes::Ggx, [0.3, 0.3], 1.0, 0.0, 0.0),
+        of(Slopes::Ggx, [0.5, 0.2], 0.04, 0.8, 0.0),
+        of(Slopes::Ggx, [0.4, 0.4], 1.0, 0.0, 1.0),
+        of(Slopes::Beckmann, [0.2, 0.4], 0.3, 0.5, 0.7),
+    ]
+}
+
+/// What the whole material reflects of light from `light` towards `view`, on average over seeds, linear RGB.
+fn reflected(facets: &CountedFacets, view: Vec3, light: Vec3) -> Vec3 {
+    let cone = ConeLight { direction: light, irradiance: Vec3::ONE, solid_angle_sr: 0.0 };
+    let found = cone_light(pixel(facets, Vec2::ZERO, view), cone);
+    mean_radiance(facets.material(), found.radiance) + found.beside
+}
+
+/// Integral over the hemisphere of `f`, by `steps`² directions even in solid angle times the cosine.
+fn over_hemisphere(steps: u32, mut f: impl FnMut(Vec3) -> f64) -> f64 {
+    let mut sum = 0.0;
+    for i in 0..steps {
+        // Finer towards the horizon, where lobes seen from the side lie.
+        let t = (f64::from(i) + 0.5) / f64::from(steps);
+        let (sine, cosine) = (t * 0.5 * PI).sin_cos();
+        for j in 0..steps {
+            let (y, x) = ((f64::from(j) + 0.5) / f64::from(steps) * 2.0 * PI).sin_cos();
+            let light = DVec3::new(sine * x, sine * y, cosine).as_vec3();
+            sum += f(light) * sine * PI * PI / f64::from(steps).powi(2);
+        }
+    }
+    sum
+}
+
+/// The layers are those of their definitions in f64: Lambert's law, and GGX at an F0 of 0.04.
+#[test]
+fn layers_are_those_of_their_definitions() {
+    let mut worst = 0.0f64;
+    for options in layered() {
+        let (facets, _) = baked(&options);
+        let coat =
+            GlintsOptions { f0: [0.04; 3], alpha: [options.coat_alpha; 2], slopes: Slopes::Ggx, ..options.clone() };
+        let (coat, base) =
+            (ReferenceSurface::new(&coat), ReferenceSurface::new(&GlintsOptions { turn: 0.0, ..options.clone() }));
+        for (view, light) in [
+            (towards(0.0, 0.0), towards(5.0, 40.0)),
+            (towards(60.0, 10.0), towards(58.0, 188.0)),
+            (towards(80.0, 100.0), towards(30.0, -60.0)),
+        ] {
+            let (v, l) = (view.as_dvec3(), light.as_dvec3());
+            let schlick = |f0: f64, cosine: f64| f0 + (1.0 - f0) * (1.0 - cosine).powi(5);
+            let weight = f64::from(options.coat);
+            let through = 1.0 - weight * schlick(0.04, v.z);
+            let entering = 1.0 - schlick(f64::from(options.f0[0]), v.z);
+            let exact =
+                weight * coat.brdf_cosine(v, l).x + through * f64::from(options.diffuse[0]) * entering * l.z / PI;
+            let cone = ConeLight { direction: light, irradiance: Vec3::ONE, solid_angle_sr: 0.0 };
+            let found = f64::from(cone_light(pixel(&facets, Vec2::ZERO, view), cone).beside.x);
+            worst = worst.max((found - exact).abs() / exact.max(1e-3));
+            // Facets have what the coat leaves.
+            let turn = f64::from(options.turn);
+            let turned =
+                |v: DVec3| DVec3::new(turn.cos() * v.x + turn.sin() * v.y, turn.cos() * v.y - turn.sin() * v.x, v.z);
+            let exact = through * base.brdf_cosine(turned(v), turned(l)).x;
+            let found = f64::from(cone_light(pixel(&facets, Vec2::ZERO, view), cone).radiance.x);
+            worst = worst.max((found - exact).abs() / exact.max(1e-3));
+        }
+    }
+    println!("layers are off by {worst:.1e}");
+    assert!(worst < 0.01, "{worst}");
+}
+
+/// A white material under light from everywhere gives no more than falls on it.
+#[test]
+fn no_material_gives_more_light_than_falls_on_it() {
+    for options in layered() {
+        let (facets, _) = baked(&GlintsOptions {
+            f0: options.f0,
+            diffuse: options.diffuse.map(|d| if d > 0.0 { 1.0 } else { 0.0 }),
+            ..options
+        });
+        for angle in [0.0f32, 45.0, 70.0, 85.0] {
+            let view = towards(angle, 20.0);
+            let albedo = over_hemisphere(400, |light| f64::from(reflected(&facets, view, light).x));
+            println!(
+                "{:?} α {:?}, coat {}: albedo {albedo:.4} at {angle}°",
+                facets.params.slopes, facets.params.alpha, facets.params.coat
+            );
+            assert!(albedo < 1.0 + 1e-3, "{angle}: {albedo}");
+        }
+    }
+}
+
+/// χ² of directions over 20 × 40 equal bins of the hemisphere, and one for what lies below.
+#[test]
+fn samples_have_the_density_that_is_said() {
+    const SAMPLES: u32 = 400_000;
+    let (rows, columns) = (20usize, 40usize);
+    for options in layered() {
+        let (facets, _) = baked(&options);
+        let material = facets.material();
+        for angle in [10.0f32, 65.0] {
+            let view = towards(angle, 30.0);
+            let rng = &mut ItemRng::new(5, Purpose::Test(83), 0);
+            let mut counts = vec![0.0f64; rows * columns + 1];
+            for _ in 0..SAMPLES {
+                let [x, y, z] = [rng.unit(), rng.unit(), rng.unit()].map(|u| u as f32);
+                let light = counted_sample(material, view, Vec3::new(x, y, z));
+                assert!((light.length() - 1.0).abs() < 1e-3, "{light}");
+                let bin = if light.z > 0.0 {
+                    let turn = f64::from(light.y).atan2(f64::from(light.x)) / (2.0 * PI) + 0.5;
+                    let row = (f64::from(light.z) * rows as f64) as usize;
+                    row.min(rows - 1) * columns + ((turn * columns as f64) as usize).min(columns - 1)
+                } else {
+                    rows * columns
+                };
+                counts[bin] += 1.0;
+            }
+            let mut expected = vec![0.0f64; rows * columns + 1];
+            const FINE: usize = 32;
+            let cell = 2.0 * PI / ((rows * columns * FINE * FINE) as f64);
+            for i in 0..rows * FINE {
+                for j in 0..columns * FINE {
+                    let z = (i as f64 + 0.5) / (rows * FINE) as f64;
+                    let turn = ((j as f64 + 0.5) / (columns * FINE) as f64 - 0.5) * 2.0 * PI;
+                    let across = (1.0 - z * z).sqrt();
+                    let light = DVec3::new(across * turn.cos(), across * turn.sin(), z).as_vec3();
+                    expected[i / FINE * columns + j / FINE] += f64::from(counted_pdf(material, view, light)) * cell;
+                }
+            }
+            expected[rows * columns] = 1.0 - expected.iter().sum::<f64>();
+            let (mut chi2, mut freedom) = (0.0, 0.0);
+            for (count, share) in counts.iter().zip(&expected) {
+                let expected = share * f64::from(SAMPLES);
+                if expected > 20.0 {
+                    chi2 += (count - expected).powi(2) / expected;
+                    freedom += 1.0;
+                }
+            }
+            println!("{:?} at {angle}°: χ² {chi2:.1} of {freedom} bins", options.slopes);
+            assert!(
+                freedom > 50.0 && chi2 < freedom + 5.0 * f64::sqrt(2.0 * freedom),
+                "{options:?} {angle}: {chi2} of {freedom}"
+            );
+        }
+    }
+}
+
+/// The mean of what samples weigh, glints and all, is the albedo of the smooth surface.
+#[test]
+fn the_mean_of_sampled_weights_is_the_albedo() {
+    const SAMPLES: u32 = 200_000;
+    for mut options in layered() {
+        // Many pixels of facets that are seldom lit would need more samples than there is time for.
+        (options.facet_spread, options.density, options.relative_area) = (0.1, 1e5, 0.8);
+        let (facets, _) = baked(&options);
+        for angle in [10.0f32, 60.0] {
+            let view = towards(angle, 30.0);
+            let mut material = facets.material();
+            let cone = |direction| ConeLight { direction, irradiance: Vec3::ONE, solid_angle_sr: 0.0 };
+            let at = |material| counted_surface(material, Vec2::ZERO, Vec2::new(0.1, 0.0), Vec2::new(0.0, 0.1), view);
+            let albedo = over_hemisphere(400, |light| {
+                let found = cone_light(at(material), cone(light));
+                f64::from((mean_radiance(material, found.radiance) + found.beside).x)
+            });
+            let rng = &mut ItemRng::new(5, Purpose::Test(84), 0);
+            let (mean, error) = mean_and_error((0..SAMPLES).map(|seed| {
+                material.seed = seed;
+                let [x, y, z] = [rng.unit(), rng.unit(), rng.unit()].map(|u| u as f32);
+                let light = counted_sample(material, view, Vec3::new(x, y, z));
+                if light.z <= 0.0 {
+                    return 0.0;
+                }
+                let surface = at(material);
+                let found = cone_light(surface, cone(light));
+                let seen = four_lights(surface, &[], [found, no_light(), no_light(), no_light()]).x;
+                f64::from(seen / counted_pdf(material, view, light))
+            }));
+            println!("{:?} at {angle}°: albedo {albedo:.4}, sampled {mean:.4} ± {error:.4}", options.slopes);
+            assert!((mean - albedo).abs() < 4.0 * error + 1e-3, "{options:?} {angle}: {mean} ± {error}, {albedo}");
+            assert!(error < 0.02 * albedo, "{options:?} {angle}: {mean} ± {error}");
         }
     }
 }

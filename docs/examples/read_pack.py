@@ -45,7 +45,7 @@ PARAMETERS = {
         measured=dict(normalisation="f64", mean_l1_first_level="f64", ks_last_level="f64")),
     "GLPP": dict(
         slopes=("enum", ["Beckmann", "Ggx"]), alpha=PAIR, turn="f32", f0=RGB, density="f32", relative_area="f32", facet_area="f32",
-        facet_spread="f32", sky_spread="f32", seed="u32", colours=("list", RGB), table_mean_error="f64"),
+        facet_spread="f32", sky_spread="f32", seed="u32", diffuse=RGB, coat="f32", coat_alpha="f32", colours=("list", RGB), table_mean_error="f64"),
     "ENPP": dict(
         face_size="u32", per_size="u32", kernel=("enum", ["Ndf", "GgxNl", "GgxSoft"]),
         roughness=("list", "f64"), radiance_scale="f64", levels=("list", "f64"),

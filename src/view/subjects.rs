@@ -20,6 +20,8 @@ pub struct Subjects {
     pub shown: Vec<Subject>,
     /// What lights a scene whose environment is on; black where no pack has one.
     pub environment: Option<Rc<Resources>>,
+    /// Pipeline constants of programs that reflect it.
+    environment_constants: Vec<(&'static str, f64)>,
     left_out: Vec<String>,
 }
 
@@ -45,8 +47,8 @@ impl Subjects {
             subjects.add_area_lights(gpu, pack)?;
             subjects.add_glints(gpu, pack)?;
         }
-        subjects.light_glints();
         subjects.add(Method::Smooth, "", &nothing(gpu), Material::default());
+        subjects.light_all();
         Ok(subjects)
     }
 
@@ -56,6 +58,8 @@ impl Subjects {
         for method in [Method::Textures, Method::PlainTextures] {
             let materials = methods::textures::upload(gpu, textured, method == Method::PlainTextures)?;
             let Some(first) = materials.first() else { continue };
+            let mut constants = self.environment_constants.clone();
+            constants.push(("EMITS", f64::from(u8::from(textured.emits()))));
             let material = Material { texels_per_unit, ..Material::default() };
             let shown = Subject {
                 name: textured.name.clone(),
@@ -64,7 +68,7 @@ impl Subjects {
                 parts: textured.parts.iter().map(|&material| Rc::clone(&materials[material])).collect(),
                 material,
                 files: Vec::new(),
-                constants: vec![("EMITS", f64::from(u8::from(textured.emits())))],
+                constants,
                 rim_roughness: 0.0,
             };
             self.shown.insert(self.shown.len() - 1, shown);
@@ -155,8 +159,8 @@ impl Subjects {
             let bindings = glint_formats::environment::BINDINGS;
             self.environment = Some(Rc::new(bind_pack(gpu, pack, name, bindings, Wrap::Clamp)?));
             let material = Material { alpha: [0.25; 2], ..Material::default() };
-            let shown = self.add(Method::Environment, name, &nothing(gpu), material);
-            shown.constants = methods::environment::constants(&params);
+            self.add(Method::Environment, name, &nothing(gpu), material);
+            self.environment_constants = methods::environment::constants(&params);
         }
         Ok(())
     }
@@ -165,17 +169,19 @@ impl Subjects {
         for name in glints::sections::materials(pack) {
             let params = glints::sections::params(pack, name).map_err(bad)?;
             let data = Rc::new(bind_pack(gpu, pack, name, glint_formats::glints::BINDINGS, Wrap::Clamp)?);
-            self.add(Method::Glints, name, &data, glints_material(&params));
+            let shown = self.add(Method::Glints, name, &data, glints_material(&params));
+            let has = |layer: bool| f64::from(u8::from(layer));
+            shown.constants.push(("GLINTS_TURNED", has(params.turn != 0.0)));
+            shown.constants.push(("GLINTS_DIFFUSE", has(params.diffuse != [0.0; 3])));
+            shown.constants.push(("GLINTS_COATED", has(params.coat > 0.0)));
         }
         Ok(())
     }
 
-    /// Counted facets see the environment that lights the scene, of whichever pack.
-    fn light_glints(&mut self) {
-        let environment = self.shown.iter().find(|shown| shown.method == Method::Environment);
-        let Some(constants) = environment.map(|shown| shown.constants.clone()) else { return };
-        for shown in self.shown.iter_mut().filter(|shown| shown.method == Method::Glints) {
-            shown.constants.clone_from(&constants);
+    /// Every program reflects the environment that lights the scene, of whichever pack.
+    fn light_all(&mut self) {
+        for shown in &mut self.shown {
+            shown.constants.extend(self.environment_constants.iter().copied());
         }
     }
 

@@ -17,7 +17,7 @@ fn the_default_material_verifies_and_is_described() {
     case.verify();
     let report = case.report();
     let facets = &report["counted_facets"][0];
-    assert_eq!((&facets["name"], &facets["gpu_bytes"]), (&"glints".into(), &65_632.into()));
+    assert_eq!((&facets["name"], &facets["gpu_bytes"]), (&"glints".into(), &65_664.into()));
     assert_eq!(facets["params"]["slopes"], "Ggx");
     assert_eq!(report["provenance"][0]["method"], "glints");
     let text = case.info(&[]).ok().stdout;
@@ -53,6 +53,9 @@ fn every_flag_is_taken_and_changes_what_it_says() {
             "colours",
             serde_json::json!([[1.0, 0.5, 0.0], [0.0, 0.5, 1.0]]),
         ),
+        (&["--diffuse", "0.5,0.25,0"], "diffuse", serde_json::json!([0.5, 0.25, 0.0])),
+        (&["--coat", "0.5"], "coat", serde_json::json!(0.5)),
+        (&["--coat-alpha", "0.25"], "coat_alpha", serde_json::json!(0.25)),
         (&["--seed", "4294967295"], "seed", serde_json::json!(4_294_967_295u32)),
     ] {
         assert!(case.pack(flags) != plain, "{flags:?}");
@@ -90,6 +93,13 @@ fn what_cannot_work_is_refused_by_the_name_of_its_flag() {
         ("--sky-spread", "-1", 2),
         ("--sky-spread", "181", 2),
         ("--colour", "2,0,0", 2),
+        ("--diffuse", "1.5,0,0", 2),
+        ("--diffuse", "0.5", 2),
+        ("--coat", "1.01", 2),
+        ("--coat", "-0.5", 2),
+        ("--coat-alpha", "0", 2),
+        ("--coat-alpha", "0.0001", 2),
+        ("--coat-alpha", "1.5", 2),
         ("--target", "phong", 2),
         ("--seed", "-1", 2),
         ("--max-memory", "1K", 6),

@@ -30,7 +30,7 @@ struct GlintFootprintBox {
     lod: f32,
     // log2 of its longer edge over the shorter.
     ratio: f32,
-    // Direction of its longer edge: twice its angle, as the way around a square with corners at (+-1, 0) and (0, +-1), 0 to 4.
+    // Direction of its longer edge: twice its angle, in quarter turns, 0 to 4.
     turn: f32,
 }
 
@@ -72,7 +72,16 @@ fn glint_footprint_box(d_dx: vec2f, d_dy: vec2f) -> GlintFootprintBox {
     let twice = axes.difference;
     let around = abs(twice.x) + abs(twice.y);
     let along = select(1.0, twice.x / around, around > 0.0);
-    return GlintFootprintBox(lod, ratio, select(3.0 + along, 1.0 - along, twice.y >= 0.0));
+    let quarters = glint_half_turn(along);
+    return GlintFootprintBox(lod, ratio, select(4.0 - quarters, quarters, twice.y >= 0.0));
+}
+
+// Angle of the vector (x, 1 - |x|), in quarter turns from (1, 0) on, 0 to 2.
+fn glint_half_turn(x: f32) -> f32 {
+    let t = 1.0 - 2.0 * abs(x);
+    let t2 = t * t;
+    let arc = t * (0.633288 - t2 * (0.181715 - t2 * 0.048427));
+    return select(1.5 - arc, 0.5 + arc, x >= 0.0);
 }
 
 // Mixes 32 bits in one round, a bijection: enough for the upper bits of sums of random numbers.
@@ -128,14 +137,11 @@ fn glint_sectors(ratio: f32) -> f32 {
     return floor(GLINT_SECTORS * glint_level_scale(-i32(ratio)) + 0.25);
 }
 
-// Cosine and sine of the direction whose double is at `turn` on the way around the square.
+// Cosine and sine of half the angle `turn`.
 fn glint_turn_direction(turn: f32) -> vec2f {
-    let first_half = turn < 2.0;
-    let x = select(turn - 3.0, 1.0 - turn, first_half);
-    let y = 1.0 - abs(x);
-    let cosine = x * inverseSqrt(x * x + y * y);
-    let both = sqrt(max(vec2f(0.5 + 0.5 * cosine, 0.5 - 0.5 * cosine), vec2f(0.0)));
-    return vec2f(select(-both.x, both.x, first_half), both.y);
+    let h = 2.0 - turn;
+    let h2 = h * h;
+    return vec2f(h * (0.78516 - h2 * (0.080265 - h2 * 2.2457e-3)), 0.999404 - h2 * (0.305702 - h2 * 0.0140004));
 }
 
 // Random state of the cell of a pixel's facets: `footprint` around `position` (surface units) of the surface `seed`.

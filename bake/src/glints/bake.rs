@@ -25,6 +25,9 @@ pub fn bake(options: &GlintsOptions, _progress: &dyn Progress) -> Result<Counted
         facet_spread: options.facet_spread,
         sky_spread: options.sky_spread,
         seed: options.seed,
+        diffuse: options.diffuse,
+        coat: options.coat,
+        coat_alpha: options.coat_alpha,
         colours: options.colours.clone(),
         table_mean_error: TABLE_MEAN_ERROR,
     };

@@ -1,8 +1,8 @@
 //! A baked material of counted facets.
 
 use super::eval::CountedMaterial;
+use super::layers::Layers;
 use crate::area_light::baked::LtcTables;
-use crate::microfacet::SmoothSurface;
 use glam::{Vec2, Vec3};
 use glint_formats::glints::GlintsParams;
 
@@ -21,7 +21,8 @@ impl CountedFacets {
         let uniform = self.params.uniform();
         CountedMaterial {
             f0: Vec3::from_array(uniform.f0),
-            smooth: SmoothSurface { alpha: Vec2::from_array(uniform.alpha), normal_target: uniform.normal_target },
+            normal_target: uniform.normal_target,
+            alpha: Vec2::from_array(uniform.alpha),
             turn: Vec2::from_array(uniform.turn),
             mean_colour: Vec3::from_array(uniform.mean_colour),
             colours: uniform.colours,
@@ -31,6 +32,11 @@ impl CountedFacets {
             facet_spread: uniform.facet_spread,
             sky_spread: uniform.sky_spread,
             seed: uniform.seed,
+            layers: Layers {
+                diffuse: Vec3::from_array(uniform.layers.diffuse),
+                coat: uniform.layers.coat,
+                coat_alpha: uniform.layers.coat_alpha,
+            },
         }
     }
 

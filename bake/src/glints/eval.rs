@@ -15,6 +15,7 @@
 //!   as if a facet could reflect both, which the paper's multinomial forbids: the covariance that is left out is −N p q for chances p and q.
 //! - Facets may have colours of a palette ([`facet_colour`]), and share the surface with a smooth part ([`CountedMaterial::relative_area`]).
 
+use super::layers::{Layers, coat_through, cone_layers, rect_layers};
 use crate::area_light::baked::Tables;
 use crate::area_light::rect::{RectLight, Roughness, faces, lobe_light};
 use crate::brdf::{fresnel, half_vector};
@@ -23,7 +24,7 @@ use crate::counting::query::{
     angle_state, cell_bits, cell_words, facet_cell, footprint_area, footprint_box, footprint_facets,
 };
 use crate::hash::CellState;
-use crate::microfacet::{GGX, SmoothSurface, microfacet_lambda, microfacet_masked, microfacet_ndf};
+use crate::microfacet::{SmoothSurface, microfacet_lambda, microfacet_masked, microfacet_ndf, microfacet_under_cone};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
@@ -45,8 +46,10 @@ const WIDEST: f32 = 2.0 * PI;
 pub struct CountedMaterial {
     /// Reflectance at normal incidence, linear RGB.
     pub f0: Vec3,
-    /// Slopes of the facets.
-    pub smooth: SmoothSurface,
+    /// [`BECKMANN`](crate::microfacet::BECKMANN) or [`GGX`](crate::microfacet::GGX).
+    pub normal_target: u32,
+    /// Roughness α along both axes, 1e-3 to 1.
+    pub alpha: Vec2,
     /// Cosine and sine of the angle from the tangent to the first axis of roughness.
     pub turn: Vec2,
     /// Mean of the facets' colours, linear RGB; white where there are none.
@@ -65,6 +68,8 @@ pub struct CountedMaterial {
     pub sky_spread: f32,
     /// Surfaces with different seeds have different glints.
     pub seed: u32,
+    /// What facets lie on and under.
+    pub layers: Layers,
 }
 
 /// A pixel of a material: its facets, in the frame of the roughness.
@@ -93,24 +98,26 @@ pub struct ConeLight {
     pub solid_angle_sr: f32,
 }
 
-/// What one light does: its smooth reflection, and the chance and the random bits of its facets.
+/// What one light does: the smooth reflection of facets, what other layers add, and the chance and the random state of its facets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FacetLight {
-    /// Radiance of the smooth surface, linear RGB.
+    /// Radiance of the smooth surface that facets converge to, through the coat, linear RGB.
     pub radiance: Vec3,
     /// Chance that a facet reflects the light.
     pub chance: f32,
+    /// Radiance of what is scattered below the facets and of the coat, linear RGB.
+    pub beside: Vec3,
     /// State of the cell towards the light.
     pub state: CellState,
 }
 
 /// No light at all: what stands for the lights that are missing to four.
 pub fn no_light() -> FacetLight {
-    FacetLight { radiance: Vec3::ZERO, chance: 0.0, state: CellState { a: 0, b: 0 } }
+    FacetLight { radiance: Vec3::ZERO, chance: 0.0, beside: Vec3::ZERO, state: CellState { a: 0, b: 0 } }
 }
 
 /// From the tangent frame to that of the roughness.
-fn turned(turn: Vec2, v: Vec3) -> Vec3 {
+pub(super) fn turned(turn: Vec2, v: Vec3) -> Vec3 {
     Vec3::new(turn.x * v.x + turn.y * v.y, turn.x * v.y - turn.y * v.x, v.z)
 }
 
@@ -135,21 +142,6 @@ fn seen_solid_angle(material: CountedMaterial, solid_angle: f32) -> f32 {
     (solid_angle + PI * material.facet_spread * material.facet_spread).min(WIDEST)
 }
 
-/// The smooth surface whose lobe is as wide as that of facets that see a light of `solid_angle` from `view`, with the half vector's cosine
-/// `cos_h`.
-///
-/// A cone of half angle γ is reflected by normals in an ellipse: γ / 2 along the plane of incidence and γ / (2 h·o) across. GGX's mean over
-/// a disk of radius r around its peak is the peak of roughness √(α² + r²): 1 / (π (α² + r²)); Beckmann's, a Gaussian, has the disk's variance more, r² / 2.
-fn seen_surface(smooth: SmoothSurface, view: Vec3, solid_angle: f32, cos_h: f32) -> SmoothSurface {
-    let width = if smooth.normal_target == GGX { 1.0 } else { 0.5 };
-    let along = width * solid_angle * (0.25 / PI);
-    let across = along / (cos_h * cos_h).max(LEAST_COSINE);
-    let flat = Vec2::new(view.x, view.y);
-    let share = flat * flat / flat.dot(flat).max(1e-12);
-    let squares = smooth.alpha * smooth.alpha + Vec2::splat(across) - share * (across - along);
-    SmoothSurface { alpha: Vec2::new(squares.x.sqrt(), squares.y.sqrt()), ..smooth }
-}
-
 /// Place, in cells as wide as a light of `solid_angle`, of the normal `half` that facets need to reflect it.
 ///
 /// A cone of half angle γ is reflected by normals in an ellipse: γ along the plane of incidence and γ / h·o across, in diameter. Places
@@ -165,18 +157,23 @@ pub fn light_place(view: Vec3, half: Vec3, solid_angle: f32) -> Vec2 {
 /// A small cone on the surface.
 pub fn cone_light(surface: CountedSurface, light: ConeLight) -> FacetLight {
     let material = surface.material;
+    let smooth_surface =
+        SmoothSurface { alpha2: material.alpha * material.alpha, normal_target: material.normal_target };
     let direction = turned(material.turn, light.direction);
     let half = half_vector(surface.view, direction);
     let solid_angle = seen_solid_angle(material, light.solid_angle_sr);
     let cos_h = surface.view.dot(half);
-    let seen = seen_surface(material.smooth, surface.view, solid_angle, cos_h);
+    let seen = microfacet_under_cone(smooth_surface, surface.view, solid_angle, cos_h);
     let density = microfacet_ndf(seen, half);
     // Eq. 9.
     let chance = density * solid_angle / (4.0 * cos_h.max(LEAST_COSINE) * material.facet_area);
     let reflected = density * microfacet_masked(seen, surface.view, direction);
+    let through = coat_through(material.layers, surface.view.z);
+    let beside = cone_layers(material.layers, material.f0, surface.view, direction, light.solid_angle_sr);
     FacetLight {
-        radiance: fresnel(material.f0, cos_h) * light.irradiance * reflected,
+        radiance: fresnel(material.f0, cos_h) * light.irradiance * (reflected * through),
         chance: chance.min(1.0),
+        beside: beside * light.irradiance,
         state: angle_state(surface.cell, light_place(surface.view, half, solid_angle)),
     }
 }
@@ -184,7 +181,7 @@ pub fn cone_light(surface: CountedSurface, light: ConeLight) -> FacetLight {
 /// A rectangle on the surface, `light` in the tangent frame.
 pub fn rect_facets(tables: &Tables, surface: CountedSurface, light: &RectLight) -> FacetLight {
     let material = surface.material;
-    let alpha = material.smooth.alpha;
+    let alpha = material.alpha;
     let corners = light.corners.map(|corner| turned(material.turn, corner));
     let rect = RectLight { corners, ..*light };
     let swapped = alpha.y > alpha.x;
@@ -202,12 +199,14 @@ pub fn rect_facets(tables: &Tables, surface: CountedSurface, light: &RectLight) 
     let place = light_place(surface.view, half, seen_solid_angle(material, solid_angle));
     let reflectance = material.f0 * found.terms.x + (Vec3::ONE - material.f0) * found.terms.y;
     // From what reaches the eye to what facets reflect: masking and the view's cosine, at the rectangle's middle.
-    let masked = 1.0 + microfacet_lambda(material.smooth, surface.view) + microfacet_lambda(material.smooth, direction);
+    let smooth_surface = SmoothSurface { alpha2: alpha * alpha, normal_target: material.normal_target };
+    let masked = 1.0 + microfacet_lambda(smooth_surface, surface.view) + microfacet_lambda(smooth_surface, direction);
     let cos_h = surface.view.dot(half).max(LEAST_COSINE);
     let facets = found.terms.x * surface.view.z.max(LEAST_COSINE) * masked / (cos_h * material.facet_area);
     FacetLight {
-        radiance: reflectance * (form_factor * light.radiance),
+        radiance: reflectance * (form_factor * light.radiance * coat_through(material.layers, surface.view.z)),
         chance: (form_factor * facets).min(1.0),
+        beside: rect_layers(tables, material.layers, material.f0, surface.view, &rect),
         state: angle_state(surface.cell, place),
     }
 }
@@ -232,11 +231,11 @@ pub fn facet_colour(material: CountedMaterial, colours: &[Vec3], state: CellStat
     material.mean_colour + (colours[index as usize] - material.mean_colour) / hits.max(1.0).sqrt()
 }
 
-/// Radiance of a light, linear RGB: of the facets, `ratio` times what is expected of them, and of the smooth part.
+/// Radiance of a light, linear RGB: of the facets, `ratio` times what is expected of them, of the smooth part, and of other layers.
 fn facet_radiance(surface: CountedSurface, colours: &[Vec3], light: FacetLight, ratio: f32) -> Vec3 {
     let share = surface.material.relative_area;
     let colour = facet_colour(surface.material, colours, light.state, ratio * (surface.facets * light.chance));
-    light.radiance * (colour * (share * ratio) + (1.0 - share))
+    light.radiance * (colour * (share * ratio) + (1.0 - share)) + light.beside
 }
 
 /// Radiance towards the eye from up to four lights, linear RGB.
@@ -245,7 +244,7 @@ pub fn four_lights(surface: CountedSurface, colours: &[Vec3], lights: [FacetLigh
     (0..4).map(|k| facet_radiance(surface, colours, lights[k], ratios[k])).sum()
 }
 
-/// Radiance of a light of the mean over seeds, linear RGB: what facets converge to.
+/// Radiance of the mean over seeds, linear RGB, where the smooth reflection is `radiance`: what facets converge to.
 pub fn mean_radiance(material: CountedMaterial, radiance: Vec3) -> Vec3 {
     radiance * (material.mean_colour * material.relative_area + (1.0 - material.relative_area))
 }
@@ -259,7 +258,8 @@ fn sky_state(surface: CountedSurface) -> CellState {
 }
 
 /// Radiance of a sky, linear RGB: `drawn` of its facets, `smooth_radiance` without any, and the first two moments of what a facet reflects, see
-/// [`Chances`](crate::environment::eval::Chances). The facets of its draw are as many as those of one level with these moments.
+/// [`Chances`](crate::environment::eval::Chances). The facets of its draw are as many as those of one level with these moments. Other
+/// layers add [`sky_layers`](super::layers::sky_layers).
 pub fn sky_radiance(
     surface: CountedSurface,
     colours: &[Vec3],
@@ -270,7 +270,7 @@ pub fn sky_radiance(
     let share = surface.material.relative_area;
     let hits = surface.facets * moments[0] * moments[0] / moments[1].max(LEAST_EXPECTED);
     let colour = facet_colour(surface.material, colours, sky_state(surface), hits);
-    drawn * colour * share + smooth_radiance * (1.0 - share)
+    (drawn * colour * share + smooth_radiance * (1.0 - share)) * coat_through(surface.material.layers, surface.view.z)
 }
 
 /// The words of a draw under a sky, of a tree with `leaves` leaves: word 0 is that of the whole number of facets, which all lights share.

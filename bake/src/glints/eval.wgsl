@@ -13,6 +13,7 @@
 #import microfacet
 #import counting::query
 #import area_light::rect
+#import glints::layers
 
 const GLINT_WHOLE_DRAW: u32 = 0u;
 const GLINT_COUNT_DRAW: u32 = 1u;
@@ -49,6 +50,7 @@ struct GlintCountedMaterial {
     // By how much the eye turns, in radians, until facets under a sky are others; 0 for never.
     sky_spread: f32,
     seed: u32,
+    layers: GlintLayers,
 }
 
 // A pixel of a material: its facets, in the frame of the roughness.
@@ -73,16 +75,17 @@ struct GlintConeLight {
     solid_angle_sr: f32,
 }
 
-// What one light does: its smooth reflection, and the chance and the random state of its facets.
+// What one light does: the smooth reflection of facets, what other layers add, and the chance and the random state of its facets.
 struct GlintFacetLight {
     radiance: vec3f,
     chance: f32,
+    beside: vec3f,
     state: GlintCellState,
 }
 
 // No light at all. A function, since a constant of nested structs does not come through translation to HLSL.
 fn glint_no_light() -> GlintFacetLight {
-    return GlintFacetLight(vec3f(0.0), 0.0, GlintCellState(0u, 0u));
+    return GlintFacetLight(vec3f(0.0), 0.0, vec3f(0.0), GlintCellState(0u, 0u));
 }
 
 // From the tangent frame to that of the roughness.
@@ -112,17 +115,6 @@ fn glint_seen_solid_angle(material: GlintCountedMaterial, solid_angle: f32) -> f
     return min(solid_angle + 3.14159265 * material.facet_spread * material.facet_spread, GLINT_WIDEST);
 }
 
-// The smooth surface whose lobe is as wide as that of facets that see a light of `solid_angle` from `view`, with the half vector's cosine
-// `cos_h`.
-fn glint_seen_surface(smooth_surface: GlintSmoothSurface, view: vec3f, solid_angle: f32, cos_h: f32) -> GlintSmoothSurface {
-    let width = select(0.5, 1.0, smooth_surface.normal_target == GLINT_MICROFACET_GGX);
-    let along = width * solid_angle * 0.079577472;
-    let across = along / max(cos_h * cos_h, GLINT_LEAST_COSINE);
-    let share = view.xy * view.xy / max(dot(view.xy, view.xy), 1.0e-12);
-    let squares = smooth_surface.alpha * smooth_surface.alpha + vec2f(across) - share * (across - along);
-    return GlintSmoothSurface(sqrt(squares), smooth_surface.normal_target);
-}
-
 // Place, in cells as wide as a light of `solid_angle`, of the normal `half` that facets need to reflect it.
 fn glint_light_place(view: vec3f, half: vec3f, solid_angle: f32) -> vec2f {
     let across = vec2f(-view.y, view.x) * inverseSqrt(max(dot(view.xy, view.xy), 1.0e-12));
@@ -133,18 +125,20 @@ fn glint_light_place(view: vec3f, half: vec3f, solid_angle: f32) -> vec2f {
 // A small cone on the surface.
 fn glint_cone_light(surface: GlintCountedSurface, light: GlintConeLight) -> GlintFacetLight {
     let material = surface.material;
-    let smooth_surface = GlintSmoothSurface(material.alpha, material.normal_target);
+    let smooth_surface = GlintSmoothSurface(material.alpha * material.alpha, material.normal_target);
     let direction = glint_turned(material.turn, light.direction);
     let half = glint_half_vector(surface.view, direction);
     let solid_angle = glint_seen_solid_angle(material, light.solid_angle_sr);
     let cos_h = dot(surface.view, half);
-    let seen = glint_seen_surface(smooth_surface, surface.view, solid_angle, cos_h);
+    let seen = glint_microfacet_under_cone(smooth_surface, surface.view, solid_angle, cos_h);
     let density = glint_microfacet_ndf(seen, half);
     let chance = density * solid_angle / (4.0 * max(cos_h, GLINT_LEAST_COSINE) * material.facet_area);
     let reflected = density * glint_microfacet_masked(seen, surface.view, direction);
+    let through = glint_coat_through(material.layers, surface.view.z);
     return GlintFacetLight(
-        glint_fresnel(material.f0, cos_h) * light.irradiance * reflected,
+        glint_fresnel(material.f0, cos_h) * light.irradiance * (reflected * through),
         min(chance, 1.0),
+        glint_cone_layers(material.layers, material.f0, surface.view, direction, light.solid_angle_sr) * light.irradiance,
         glint_angle_state(surface.cell, glint_light_place(surface.view, half, solid_angle)),
     );
 }
@@ -172,14 +166,15 @@ fn glint_rect_facets(surface: GlintCountedSurface, light: GlintRectLight) -> Gli
     let place = glint_light_place(surface.view, half, glint_seen_solid_angle(material, solid_angle));
     let reflectance = material.f0 * found.terms.x + (vec3f(1.0) - material.f0) * found.terms.y;
     // From what reaches the eye to what facets reflect: masking and the view's cosine, at the rectangle's middle.
-    let smooth_surface = GlintSmoothSurface(alpha, material.normal_target);
+    let smooth_surface = GlintSmoothSurface(alpha * alpha, material.normal_target);
     let masked = 1.0 + glint_microfacet_lambda(smooth_surface, surface.view)
         + glint_microfacet_lambda(smooth_surface, direction);
     let cos_h = max(dot(surface.view, half), GLINT_LEAST_COSINE);
     let facets = found.terms.x * max(surface.view.z, GLINT_LEAST_COSINE) * masked / (cos_h * material.facet_area);
     return GlintFacetLight(
-        reflectance * form_factor * light.radiance,
+        reflectance * light.radiance * (form_factor * glint_coat_through(material.layers, surface.view.z)),
         min(form_factor * facets, 1.0),
+        glint_rect_layers(material.layers, material.f0, surface.view, rect),
         glint_angle_state(surface.cell, place),
     );
 }
@@ -215,11 +210,11 @@ fn glint_facet_colour(material: GlintCountedMaterial, state: GlintCellState, hit
     return material.mean_colour + (glint_facet_palette(index) - material.mean_colour) * inverseSqrt(max(hits, 1.0));
 }
 
-// Radiance of a light, linear RGB: of the facets, `ratio` times what is expected of them, and of the smooth part.
+// Radiance of a light, linear RGB: of the facets, `ratio` times what is expected of them, of the smooth part, and of other layers.
 fn glint_facet_radiance(surface: GlintCountedSurface, light: GlintFacetLight, ratio: f32) -> vec3f {
     let share = surface.material.relative_area;
     let colour = glint_facet_colour(surface.material, light.state, ratio * (surface.facets * light.chance));
-    return light.radiance * (colour * (share * ratio) + (1.0 - share));
+    return light.radiance * (colour * (share * ratio) + (1.0 - share)) + light.beside;
 }
 
 // Radiance towards the eye from up to four lights, linear RGB: those that are `drawn`, glint_no_light the others.
@@ -249,7 +244,7 @@ fn glint_four_lights(
     return radiance;
 }
 
-// Radiance of a light of the mean over seeds, linear RGB: what facets converge to.
+// Radiance of the mean over seeds, linear RGB, where the smooth reflection is `radiance`: what facets converge to.
 fn glint_mean_radiance(material: GlintCountedMaterial, radiance: vec3f) -> vec3f {
     return radiance * (material.mean_colour * material.relative_area + (1.0 - material.relative_area));
 }
@@ -263,12 +258,13 @@ fn glint_sky_state(surface: GlintCountedSurface) -> GlintCellState {
 }
 
 // Radiance of a sky: `drawn` of its facets, `smooth_radiance` without any, and the first two moments of what a facet reflects. The facets
-// of its draw are as many as those of one level with these moments.
+// of its draw are as many as those of one level with these moments. Other layers add glint_sky_layers.
 fn glint_sky_radiance(surface: GlintCountedSurface, drawn: vec3f, smooth_radiance: vec3f, moments: vec2f) -> vec3f {
     let share = surface.material.relative_area;
     let hits = surface.facets * moments.x * moments.x / max(moments.y, GLINT_LEAST_EXPECTED);
     let colour = glint_facet_colour(surface.material, glint_sky_state(surface), hits);
-    return drawn * colour * share + smooth_radiance * (1.0 - share);
+    let through = glint_coat_through(surface.material.layers, surface.view.z);
+    return (drawn * colour * share + smooth_radiance * (1.0 - share)) * through;
 }
 
 // The words of a draw under a sky of `levels` levels: word 0 is that of the whole number of facets, which all lights share.

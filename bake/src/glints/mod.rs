@@ -11,11 +11,13 @@
 mod bake;
 pub mod baked;
 pub mod eval;
+pub mod layers;
 pub mod options;
 pub mod reference;
+pub mod sampling;
 pub mod sections;
 
-crate::shader::shaders!("glints": "eval");
+crate::shader::shaders!("glints": "eval", "layers", "sampling");
 
 pub use bake::bake;
 pub use baked::CountedFacets;

@@ -30,6 +30,12 @@ pub struct GlintsOptions {
     pub colours: Vec<[f32; 3]>,
     /// Seed of the facets.
     pub seed: u32,
+    /// Albedo of what is scattered below the facets, linear RGB, 0 to 1; black for metals.
+    pub diffuse: [f32; 3],
+    /// Weight of a clear coat over the facets, 0 for none to 1.
+    pub coat: f32,
+    /// GGX roughness α of the coat, 0.001 to 1.
+    pub coat_alpha: f32,
 }
 
 impl Default for GlintsOptions {
@@ -46,6 +52,9 @@ impl Default for GlintsOptions {
             sky_spread: 0.0,
             colours: Vec::new(),
             seed: 1,
+            diffuse: [0.0; 3],
+            coat: 0.0,
+            coat_alpha: 0.03,
         }
     }
 }
@@ -57,7 +66,7 @@ impl GlintsOptions {
     /// [`BakeError::BadOption`] names the option, what was found and what would work.
     pub fn validate(&self) -> Result<()> {
         let colours: Vec<f32> = self.colours.as_flattened().to_vec();
-        let ranges: [(&str, &[f32], RangeInclusive<f32>); 8] = [
+        let ranges: [(&str, &[f32], RangeInclusive<f32>); 11] = [
             ("alpha", &self.alpha, ALPHA_RANGE.0..=ALPHA_RANGE.1),
             ("turn", &[self.turn], -PI..=PI),
             ("f0", &self.f0, 0.0..=1.0),
@@ -66,6 +75,9 @@ impl GlintsOptions {
             ("facet-spread", &[self.facet_spread], FACET_SPREAD_RANGE.0..=FACET_SPREAD_RANGE.1),
             ("sky-spread", &[self.sky_spread], 0.0..=PI),
             ("colour", &colours, 0.0..=1.0),
+            ("diffuse", &self.diffuse, 0.0..=1.0),
+            ("coat", &[self.coat], 0.0..=1.0),
+            ("coat-alpha", &[self.coat_alpha], ALPHA_RANGE.0..=ALPHA_RANGE.1),
         ];
         for (option, found, range) in ranges {
             if let Some(found) = found.iter().find(|value| !range.contains(value)) {
@@ -86,6 +98,7 @@ impl GlintsOptions {
             Slopes::Beckmann => BECKMANN,
             Slopes::Ggx => GGX,
         };
-        SmoothSurface { alpha: Vec2::from_array(self.alpha), normal_target }
+        let alpha = Vec2::from_array(self.alpha);
+        SmoothSurface { alpha2: alpha * alpha, normal_target }
     }
 }

@@ -38,7 +38,7 @@ fn check_material(sections: &Sections<'_>, section: Loaded<'_>, issues: &mut Vec
 fn check_parameters(params: &GlintsParams) -> Result<(), String> {
     let turn = std::f32::consts::PI;
     let (alpha, spread) = (ALPHA_RANGE.0..=ALPHA_RANGE.1, FACET_SPREAD_RANGE.0..=FACET_SPREAD_RANGE.1);
-    let ranges: [(&str, &[f32], RangeInclusive<f32>); 8] = [
+    let ranges: [(&str, &[f32], RangeInclusive<f32>); 11] = [
         ("roughness", &params.alpha, alpha),
         ("turn", &[params.turn], -turn..=turn),
         ("reflectance", &params.f0, 0.0..=1.0),
@@ -47,6 +47,9 @@ fn check_parameters(params: &GlintsParams) -> Result<(), String> {
         ("facet area", &[params.facet_area], 1.0..=2.0),
         ("spread of a facet", &[params.facet_spread], spread),
         ("spread under a sky", &[params.sky_spread], 0.0..=3.2),
+        ("diffuse albedo", &params.diffuse, 0.0..=1.0),
+        ("weight of the coat", &[params.coat], 0.0..=1.0),
+        ("roughness of the coat", &[params.coat_alpha], ALPHA_RANGE.0..=ALPHA_RANGE.1),
     ];
     for (what, found, range) in ranges {
         // A range holds no NaN.

@@ -55,7 +55,7 @@ pub enum Slopes {
     Ggx,
 }
 
-/// What a shader binds as uniforms: `GlintCountedMaterial` of `glints::eval`, 80 bytes.
+/// What a shader binds as uniforms: `GlintCountedMaterial` of `glints::eval`, 112 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct GlintsUniform {
@@ -84,9 +84,23 @@ pub struct GlintsUniform {
     /// Seed of the facets.
     pub seed: u32,
     /// 0.
-    pub unused_0: u32,
+    pub unused: [u32; 2],
+    /// What facets lie on and under.
+    pub layers: LayersUniform,
+}
+
+/// `GlintLayers` of `glints::layers`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct LayersUniform {
+    /// Albedo of what is scattered below the facets, linear RGB.
+    pub diffuse: [f32; 3],
+    /// Weight of the coat.
+    pub coat: f32,
+    /// GGX roughness of the coat.
+    pub coat_alpha: f32,
     /// 0.
-    pub unused_1: u32,
+    pub unused: [u32; 3],
 }
 
 /// Parameters of a material of counted facets.
@@ -112,6 +126,12 @@ pub struct GlintsParams {
     pub sky_spread: f32,
     /// Seed of the facets.
     pub seed: u32,
+    /// Albedo of what is scattered below the facets, linear RGB, 0 to 1; black for metals.
+    pub diffuse: [f32; 3],
+    /// Weight of a clear coat over the facets, 0 for none to 1.
+    pub coat: f32,
+    /// GGX roughness α of the coat, 0.001 to 1.
+    pub coat_alpha: f32,
     /// Colours of the facets, linear RGB, each component from 0; none means white.
     pub colours: Vec<[f32; 3]>,
     /// Mean, over the entries of the tables, of ∫ |LTC − GGX| / ∫ GGX.
@@ -149,8 +169,13 @@ impl GlintsParams {
             facet_spread: self.facet_spread,
             sky_spread: self.sky_spread,
             seed: self.seed,
-            unused_0: 0,
-            unused_1: 0,
+            unused: [0; 2],
+            layers: LayersUniform {
+                diffuse: self.diffuse,
+                coat: self.coat,
+                coat_alpha: self.coat_alpha,
+                unused: [0; 3],
+            },
         }
     }
 

@@ -49,7 +49,7 @@ pub fn cases() -> Vec<Case> {
 
 #[test]
 fn every_way_counted_facets_can_be_wrong_is_found() {
-    let edits: [fn(&mut GlintsParams); 14] = [
+    let edits: [fn(&mut GlintsParams); 18] = [
         |params| params.alpha[1] = 0.0,
         |params| params.alpha[0] = 1.5,
         |params| params.turn = 4.0,
@@ -60,6 +60,10 @@ fn every_way_counted_facets_can_be_wrong_is_found() {
         |params| params.facet_area = 0.5,
         |params| params.facet_spread = 0.0,
         |params| params.sky_spread = -1.0,
+        |params| params.diffuse[1] = 1.5,
+        |params| params.coat = -0.25,
+        |params| params.coat = f32::NAN,
+        |params| params.coat_alpha = 0.0,
         |params| params.colours = vec![[0.5; 3]; 257],
         |params| params.colours[1][2] = -0.5,
         |params| params.colours[0][0] = f32::INFINITY,
@@ -68,7 +72,12 @@ fn every_way_counted_facets_can_be_wrong_is_found() {
     for edit in edits {
         assert_eq!(codes(&with_params(edit)), [IssueCode::GlintsParameters]);
     }
-    let edits: [fn(&mut GlintsUniform); 2] = [|uniform| uniform.unused_1 = 1, |uniform| uniform.turn[0] = f32::NAN];
+    let edits: [fn(&mut GlintsUniform); 4] = [
+        |uniform| uniform.unused[1] = 1,
+        |uniform| uniform.turn[0] = f32::NAN,
+        |uniform| uniform.layers.coat = 0.25,
+        |uniform| uniform.layers.unused[2] = 1,
+    ];
     for edit in edits {
         assert_eq!(codes(&with_uniform(edit)), [IssueCode::GlintsUniform]);
     }

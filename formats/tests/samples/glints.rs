@@ -17,6 +17,9 @@ pub fn glints_params() -> GlintsParams {
         facet_spread: 0.005,
         sky_spread: 0.0,
         seed: 7,
+        diffuse: [0.5, 0.25, 0.125],
+        coat: 0.5,
+        coat_alpha: 0.05,
         colours: vec![[1.0, 0.5, 0.25], [0.0, 0.5, 0.75]],
         table_mean_error: 0.0754,
     }

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 const EXAMPLES: &str = "\
 Examples:
   glint-bake glints -o flakes.glintpack
-  glint-bake glints --alpha 0.15 --density 4e6 --f0 0.6,0.05,0.03 -o car-paint.glintpack
+  glint-bake glints --alpha 0.15 --f0 0.6,0.05,0.03 --diffuse 0.1,0,0 --coat 1 -o paint.glintpack
   glint-bake glints --density 2e5 --colour 1,0.8,0.4 --colour 0.4,0.7,1 -o glitter.glintpack";
 
 /// Bake a material of counted facets: procedural glints under every light, without a normal map
@@ -60,6 +60,15 @@ pub struct Args {
     /// Colour of facets, linear RGB; may be given up to 256 times, and facets take one of them each
     #[arg(long, value_name = "R,G,B", value_parser = reflectance3, help_heading = "Material")]
     pub colour: Vec<[f32; 3]>,
+    /// Albedo of what is scattered below the facets, linear RGB: that of snow or paint; metals have none
+    #[arg(long, value_name = "R,G,B", default_value = "0,0,0", value_parser = reflectance3, help_heading = "Layers")]
+    pub diffuse: [f32; 3],
+    /// Weight of a clear coat over the facets, 0 for none to 1
+    #[arg(long, value_name = "WEIGHT", allow_negative_numbers = true, default_value = "0", value_parser = reflectance, help_heading = "Layers")]
+    pub coat: f32,
+    /// GGX roughness α of the coat, 0.001 to 1
+    #[arg(long, value_name = "A", allow_negative_numbers = true, default_value = "0.03", value_parser = positive, help_heading = "Layers")]
+    pub coat_alpha: f64,
     /// Surfaces with different seeds have different glints
     #[arg(long, value_name = "SEED", allow_negative_numbers = true, default_value = "1", help_heading = "Material")]
     pub seed: u32,
@@ -97,6 +106,9 @@ impl Args {
             sky_spread: self.sky_spread.to_radians(),
             colours: self.colour.clone(),
             seed: self.seed,
+            diffuse: self.diffuse,
+            coat: self.coat,
+            coat_alpha: self.coat_alpha as f32,
         }
     }
 
@@ -118,6 +130,9 @@ impl Args {
         options.push("relative-area", self.relative_area);
         options.push("facet-spread", self.facet_spread);
         options.push("sky-spread", self.sky_spread);
+        options.push("diffuse", list(&self.diffuse));
+        options.push("coat", self.coat);
+        options.push("coat-alpha", self.coat_alpha);
         for colour in &self.colour {
             options.push("colour", list(colour));
         }

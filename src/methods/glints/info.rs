@@ -66,6 +66,13 @@ impl Item for GlintsInfo {
         };
         let _ = writeln!(out, "  facets       reflect {spread:.3}° either side, {sky}");
         let _ = writeln!(out, "  F0           {:?}", params.f0);
+        let _ = writeln!(out, "  diffuse      {:?}", params.diffuse);
+        match params.coat {
+            0.0 => {}
+            coat => {
+                let _ = writeln!(out, "  coat         {coat}, α {}", params.coat_alpha);
+            }
+        }
         let _ = writeln!(out, "  colours      {}", params.colours.len());
         let _ = writeln!(out, "  GPU          {}", kib(self.gpu_bytes));
         let _ = writeln!(out, "  seed         {}", params.seed);

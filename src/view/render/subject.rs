@@ -139,7 +139,11 @@ impl Method {
                 asks("DICTIONARY_COLOURED", material.colours > 0),
             ],
             Method::NdfMaps => vec![asks("NDF_MAPS_ACCURATE", material.switches & ACCURATE != 0)],
-            Method::Glints => vec![asks("GLINTS_COLOURED", material.colours > 0)],
+            Method::Glints => vec![
+                ("GLINTS_TARGET", f64::from(material.normal_target)),
+                asks("GLINTS_COLOURED", material.colours > 0),
+                asks("GLINTS_PARTIAL", material.relative_area < 1.0),
+            ],
             Method::AreaLight => vec![asks("AREA_LIGHT_DIRECTIONAL", material.lobes > 0)],
             _ => Vec::new(),
         }

@@ -173,7 +173,8 @@ pub struct Material {
 impl Material {
     /// The material with what follows from the rest of it.
     pub(super) fn complete(&self) -> Material {
-        let smooth = SmoothSurface { alpha: Vec2::from_array(self.alpha), normal_target: self.normal_target };
+        let alpha = Vec2::from_array(self.alpha);
+        let smooth = SmoothSurface { alpha2: alpha * alpha, normal_target: self.normal_target };
         Material { facet_area: microfacet_area(smooth), ..*self }
     }
 }

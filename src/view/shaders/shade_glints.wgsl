@@ -8,8 +8,14 @@
 
 // Points that are on, besides the directional light.
 override GLINTS_POINTS: u32 = 0u;
+// Distribution of slopes: GlintCountedMaterial's normal_target, known when a pipeline is made, since some devices take both ways of a branch.
+override GLINTS_TARGET: u32 = 1u;
 // What a material has; false leaves its part out of the program.
 override GLINTS_COLOURED: bool = true;
+override GLINTS_TURNED: bool = true;
+override GLINTS_PARTIAL: bool = true;
+override GLINTS_DIFFUSE: bool = true;
+override GLINTS_COATED: bool = true;
 
 // Small lights and rectangles that are on.
 fn shade_glints_count() -> u32 {
@@ -23,20 +29,30 @@ fn shade_glints_count() -> u32 {
     return count;
 }
 
+fn shade_glints_layers() -> GlintLayers {
+    let layers = counted_material.layers;
+    return GlintLayers(
+        select(vec3f(0.0), layers.diffuse, GLINTS_DIFFUSE),
+        select(0.0, layers.coat, GLINTS_COATED),
+        layers.coat_alpha,
+    );
+}
+
 fn shade_glints_surface(point: ViewPoint) -> GlintCountedSurface {
     let counted = GlintCountedMaterial(
         material.f0,
-        material.normal_target,
+        GLINTS_TARGET,
         material.alpha,
-        counted_material.turn,
+        select(vec2f(1.0, 0.0), counted_material.turn, GLINTS_TURNED),
         select(vec3f(1.0), material.mean_colour, GLINTS_COLOURED),
         select(0u, material.colours, GLINTS_COLOURED),
         material.density,
-        material.relative_area,
+        select(1.0, material.relative_area, GLINTS_PARTIAL),
         material.facet_area,
         material.facet_spread,
         material.sky_spread,
         material.seed,
+        shade_glints_layers(),
     );
     return glint_counted_surface(counted, point.uv, point.d_dx, point.d_dy, point.view);
 }
@@ -80,20 +96,42 @@ fn shade_glints_four(point: ViewPoint, surface: GlintCountedSurface, first: u32)
     let c = shade_glints_light(point, surface, first + 2u);
     let d = shade_glints_light(point, surface, first + 3u);
     if REFERENCE {
-        return glint_mean_radiance(surface.material, a.radiance + b.radiance + c.radiance + d.radiance);
+        return glint_mean_radiance(surface.material, a.radiance + b.radiance + c.radiance + d.radiance)
+            + (a.beside + b.beside + c.beside + d.beside);
     }
     let drawn = vec4u(0u, 1u, 2u, 3u) + first < vec4u(shade_glints_count());
     return glint_four_lights(surface, a, b, c, d, drawn);
 }
 
+// What layers besides the facets reflect of the environment.
+fn shade_glints_sky_layers(data: GlintEnvironment, seen: GlintSurface, surface: GlintCountedSurface) -> vec3f {
+    let layers = surface.material.layers;
+    var around = vec3f(0.0);
+    if GLINTS_DIFFUSE {
+        // The widest reflection stands for light from the half space.
+        around = glint_environment_filtered(seen.normal, glint_environment_roughness(data, 1.0)).rgb;
+    }
+    var reflected = vec3f(0.0);
+    if GLINTS_COATED {
+        let coat = GlintSurface(seen.normal, seen.view, layers.coat_alpha, GLINT_COAT_F0, 0.0);
+        reflected = glint_environment_smooth(data, coat);
+    }
+    return glint_sky_layers(layers, surface.material.f0, surface.view.z, around, reflected);
+}
+
 fn shade_glints_sky(point: ViewPoint, surface: GlintCountedSurface) -> vec3f {
     let data = shade_environment_data();
-    let chances = glint_chances(data, shade_environment_point(point, surface.facets));
+    let seen = shade_environment_point(point, surface.facets);
+    let chances = glint_chances(data, seen);
+    let beside = shade_glints_sky_layers(data, seen, surface);
     if REFERENCE {
-        return glint_mean_radiance(surface.material, chances.smooth_radiance) * scene.environment_gain;
+        let through = glint_coat_through(surface.material.layers, surface.view.z);
+        let mean = glint_mean_radiance(surface.material, chances.smooth_radiance) * through;
+        return (mean + beside) * scene.environment_gain;
     }
     let drawn = glint_environment_draw(data, chances, surface.facets, glint_sky_words(surface, data.levels));
-    return glint_sky_radiance(surface, drawn, chances.smooth_radiance, chances.moments) * scene.environment_gain;
+    let radiance = glint_sky_radiance(surface, drawn, chances.smooth_radiance, chances.moments);
+    return (radiance + beside) * scene.environment_gain;
 }
 
 fn shade_lights(point: ViewPoint, random: vec2f) -> vec3f {

@@ -3,7 +3,7 @@
 // the footprint, one a frame.
 
 #import shade_ndf_maps
-#import bind_environment
+#import shade_environment_levels
 #import hash
 #import moments
 #import ndf_maps::moments
@@ -38,12 +38,13 @@ fn shade_environment(point: ViewPoint) -> vec3f {
     let layered = NDF_MAPS_LAYERED && ndf_maps_layers.count > 1u;
     let swap = select(0u, material.switches & SHADE_NDF_SWAP, layered);
     let lower = shade_ndf_rough(point, swap, material.f0);
-    let base = glint_environment_smooth(environment, lower);
+    let data = shade_environment_data();
+    let base = glint_environment_smooth(data, lower);
     if !layered {
         return base * scene.environment_gain;
     }
     let coat_f0 = vec3f(ndf_maps_layers.coat_f0);
     let upper = shade_ndf_rough(point, 1u - swap, coat_f0);
     let through = vec3f(1.0) - glint_fresnel(coat_f0, dot(upper.normal, upper.view));
-    return (base * through + glint_environment_smooth(environment, upper)) * scene.environment_gain;
+    return (base * through + glint_environment_smooth(data, upper)) * scene.environment_gain;
 }

@@ -3,7 +3,7 @@
 
 #import view_scene
 #import view_sky
-#import bind_environment
+#import shade_environment_levels
 #import bind_loads
 #import bind_textures
 #import hash
@@ -97,9 +97,10 @@ fn shade_environment(point: ViewPoint) -> vec3f {
     let normal = scene.environment_from_world * view_to_world(point, surface.normal);
     let view = scene.environment_from_world * view_to_world(point, point.view);
     let smooth_surface = GlintSurface(normal, view, surface.alpha, surface.f0, 0.0);
-    let specular = glint_environment_smooth(environment, smooth_surface);
+    let data = shade_environment_data();
+    let specular = glint_environment_smooth(data, smooth_surface);
     // The widest reflection stands for light from the half space.
-    let around = glint_environment_filtered(normal, glint_environment_roughness(environment, 1.0)).rgb;
+    let around = glint_environment_filtered(normal, glint_environment_roughness(data, 1.0)).rgb;
     let entering = vec3f(1.0) - glint_fresnel(surface.f0, dot(normal, view));
     return (specular + entering * surface.diffuse * around) * (surface.occlusion * scene.environment_gain);
 }

@@ -1,0 +1,88 @@
+//! Directions of light in proportion to what a material of counted facets reflects on average, for path tracers, f32; twin: `sampling.wgsl`.
+//!
+//! One of three lobes is taken: facets, what is scattered below them, the coat; with chances by what each reflects of the view. GGX's visible
+//! normals are sampled as caps of a sphere (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", Listing 3), Beckmann's by
+//! their slopes, which are Gaussian. Counting does not enter: a sample is weighed by [`four_lights`](super::eval::four_lights) of
+//! a light without extent of irradiance 1 over [`counted_pdf`], which is that of the smooth surface on average.
+//! Directions are unit vectors in the tangent frame.
+
+use super::eval::{CountedMaterial, turned};
+use super::layers::{COAT_F0, coat_through};
+use crate::brdf::{fresnel, half_vector};
+use crate::microfacet::{GGX, SmoothSurface, microfacet_lambda, microfacet_ndf};
+use glam::{Vec2, Vec3};
+use std::f32::consts::{FRAC_1_PI, TAU};
+
+/// Chances of the lobes: facets, scattered light, coat; 1 together.
+fn lobe_chances(material: CountedMaterial, cos_view: f32) -> Vec3 {
+    let brightest = |colour: Vec3| colour.max_element();
+    let reflected = fresnel(material.f0, cos_view);
+    let through = coat_through(material.layers, cos_view);
+    let facets = brightest(reflected) * through;
+    let scattered = brightest(material.layers.diffuse * (Vec3::ONE - reflected)) * through;
+    let coat = material.layers.coat * fresnel(COAT_F0, cos_view).x;
+    // A material that reflects nothing is sampled by its facets.
+    let all = Vec3::new(facets + 1e-6, scattered, coat);
+    all / (all.x + all.y + all.z)
+}
+
+/// Density over solid angle of the light that facets of `surface` mirror `view` to.
+fn mirror_pdf(surface: SmoothSurface, view: Vec3, light: Vec3) -> f32 {
+    let half = half_vector(view, light);
+    let density = microfacet_ndf(surface, half);
+    if surface.normal_target == GGX {
+        // Visible normals: D(h) G₁(o) (h·o) / o.z, over 4 h·o.
+        return density / ((1.0 + microfacet_lambda(surface, view)) * 4.0 * view.z.max(1e-6));
+    }
+    density * half.z / (4.0 * view.dot(half).max(1e-6))
+}
+
+/// Normal of a facet of `surface` that `view` is mirrored at, for two uniform numbers.
+fn mirror_normal(surface: SmoothSurface, view: Vec3, random: Vec2) -> Vec3 {
+    let alpha = Vec2::new(surface.alpha2.x.sqrt(), surface.alpha2.y.sqrt());
+    let (sine, cosine) = (TAU * random.x).sin_cos();
+    if surface.normal_target == GGX {
+        let flat = Vec2::new(view.x, view.y) * alpha;
+        let stretched = flat.extend(view.z).normalize();
+        let z = (1.0 - random.y) * (1.0 + stretched.z) - stretched.z;
+        let across = (1.0 - z * z).clamp(0.0, 1.0).sqrt();
+        let cap = stretched + Vec3::new(across * cosine, across * sine, z);
+        return (Vec2::new(cap.x, cap.y) * alpha).extend(cap.z).normalize();
+    }
+    let slope = alpha * Vec2::new(cosine, sine) * (-(1.0 - random.y).max(1e-30).ln()).sqrt();
+    slope.extend(1.0).normalize()
+}
+
+/// A direction of light for `view` and three uniform numbers in [0, 1): its density is [`counted_pdf`]. Below the surface it counts as
+/// one that brings nothing.
+pub fn counted_sample(material: CountedMaterial, view: Vec3, random: Vec3) -> Vec3 {
+    let chances = lobe_chances(material, view.z);
+    let numbers = Vec2::new(random.y, random.z);
+    if random.x >= chances.x && random.x < chances.x + chances.y {
+        let (sine, cosine) = (TAU * numbers.x).sin_cos();
+        let across = numbers.y.sqrt();
+        return Vec3::new(across * cosine, across * sine, (1.0 - numbers.y).sqrt());
+    }
+    let seen = turned(material.turn, view);
+    let of_facets = SmoothSurface { alpha2: material.alpha * material.alpha, normal_target: material.normal_target };
+    let coat_alpha = material.layers.coat_alpha;
+    let of_coat = SmoothSurface { alpha2: Vec2::splat(coat_alpha * coat_alpha), normal_target: GGX };
+    let normal = mirror_normal(if random.x < chances.x { of_facets } else { of_coat }, seen, numbers);
+    let light = normal * (2.0 * seen.dot(normal)) - seen;
+    turned(material.turn * Vec2::new(1.0, -1.0), light)
+}
+
+/// Density over solid angle, 1/sr, of [`counted_sample`] at `light`; 0 unless both directions are above the surface.
+pub fn counted_pdf(material: CountedMaterial, view: Vec3, light: Vec3) -> f32 {
+    if !(view.z > 0.0 && light.z > 0.0) {
+        return 0.0;
+    }
+    let chances = lobe_chances(material, view.z);
+    let (seen, towards) = (turned(material.turn, view), turned(material.turn, light));
+    let of_facets = SmoothSurface { alpha2: material.alpha * material.alpha, normal_target: material.normal_target };
+    let coat_alpha = material.layers.coat_alpha;
+    let of_coat = SmoothSurface { alpha2: Vec2::splat(coat_alpha * coat_alpha), normal_target: GGX };
+    chances.x * mirror_pdf(of_facets, seen, towards)
+        + chances.y * (light.z * FRAC_1_PI)
+        + chances.z * mirror_pdf(of_coat, seen, towards)
+}
