@@ -84,7 +84,8 @@ pub fn microfacet_under_cone(surface: SmoothSurface, view: Vec3, solid_angle: f3
     let along = width * solid_angle * (0.25 / PI);
     let across = along / (cos_h * cos_h).max(LEAST_SQUARE);
     let flat = Vec2::new(view.x, view.y);
-    let share = flat * flat / flat.dot(flat).max(1e-12);
+    let inverse = 1.0 / flat.dot(flat).max(1e-12);
+    let share = flat * flat * inverse;
     SmoothSurface { alpha2: surface.alpha2 + Vec2::splat(across) - share * (across - along), ..surface }
 }
 

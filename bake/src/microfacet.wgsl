@@ -71,7 +71,8 @@ fn glint_microfacet_under_cone(surface: GlintSmoothSurface, view: vec3f, solid_a
     let width = select(0.5, 1.0, surface.normal_target == GLINT_MICROFACET_GGX);
     let along = width * solid_angle * 0.079577472;
     let across = along / max(cos_h * cos_h, GLINT_MICROFACET_LEAST_SQUARE);
-    let share = view.xy * view.xy / max(dot(view.xy, view.xy), 1.0e-12);
+    let inverse = 1.0 / max(dot(view.xy, view.xy), 1.0e-12);
+    let share = view.xy * view.xy * inverse;
     return GlintSmoothSurface(surface.alpha2 + vec2f(across) - share * (across - along), surface.normal_target);
 }
 

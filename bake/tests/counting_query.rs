@@ -183,6 +183,9 @@ fn surfaces_without_uv_take_the_axes_near_their_normal() {
         let place = Vec3::new(rng.unit() as f32, rng.unit() as f32, rng.unit() as f32) * 1e5;
         let seen = |normal| facing_plane(place, Vec3::Y, Vec3::new(0.8, 0.0, -0.6), normal, 3);
         let found = seen(normal);
+        // Three fifths or four fifths of the area are seen across either axis.
+        let in_plane = footprint_area(found.d_dx, found.d_dy) * found.area_ratio;
+        assert!((in_plane - 1.0).abs() < 1e-5, "{in_plane}");
         across_x += u32::from(found.position == Vec2::new(place.y, place.z));
         changed += u32::from(found.seed != seen(other).seed);
     }

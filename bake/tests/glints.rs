@@ -221,7 +221,7 @@ fn the_mean_over_seeds_is_the_smooth_surface_for_every_light() {
 fn the_variance_over_seeds_is_that_of_independent_facets() {
     let (facets, _) = baked(&options(Slopes::Ggx, [0.2; 2]));
     let view = towards(30.0, 0.0);
-    for density in [4e5f32, 4e6, 4e7, 4e9] {
+    for density in [4e4f32, 4e5, 4e6, 4e7, 4e9] {
         let of = |seed| {
             let mut material = facets.material();
             (material.density, material.seed) = (density, seed);

@@ -104,6 +104,7 @@ fn maps_and_environments_take_their_flags() {
         ("facets.glintpack", &["--light", "sun"], &["--light", "sun", "--sun-size", "30"]),
         ("facets.glintpack", &["--light", "points"], &["--light", "points", "--point-radius", "0.7"]),
         ("facets.glintpack", &["--light", "sun"], &["--light", "sun", "--facet-spread", "20"]),
+        ("facets.glintpack", &["--shape", "sphere"], &["--shape", "sphere", "--in-space"]),
         (
             "facets.glintpack",
             &["sky.glintpack", "--light", "environment"],

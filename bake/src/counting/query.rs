@@ -66,6 +66,8 @@ pub struct FacingPlane {
     pub d_dy: Vec2,
     /// Seed of the plane: the facets of three planes have nothing in common.
     pub seed: u32,
+    /// Area of a pixel on the surface over that in the plane, from 1: a factor on the density of facets.
+    pub area_ratio: f32,
 }
 
 /// Area of a pixel whose place changes by `d_dx` and `d_dy` along the screen's axes, in square surface units.
@@ -232,7 +234,9 @@ fn plane_part(v: Vec3, axis: u32) -> Vec2 {
 pub fn facing_plane(position: Vec3, d_dx: Vec3, d_dy: Vec3, normal: Vec3, seed: u32) -> FacingPlane {
     let limit = Vec3::splat(LONGEST);
     let (dx, dy) = (d_dx.clamp(-limit, limit), d_dy.clamp(-limit, limit));
-    let lod = 0.5 * quick_log2(dx.cross(dy).length().max(1e-14));
+    let front = dx.cross(dy);
+    let area = front.length().max(1e-14);
+    let lod = 0.5 * quick_log2(area);
     let patch = patch_level(lod.clamp(-MAX_CELL_LEVEL, MAX_CELL_LEVEL - 1.0).floor() as i32);
     let place = (position * level_scale(patch)).clamp(Vec3::splat(-FARTHEST), Vec3::splat(FARTHEST));
     let at: IVec3 = place.floor().as_ivec3();
@@ -252,5 +256,6 @@ pub fn facing_plane(position: Vec3, d_dx: Vec3, d_dy: Vec3, normal: Vec3, seed: 
         d_dx: plane_part(dx, axis),
         d_dy: plane_part(dy, axis),
         seed: seed ^ (axis << 30),
+        area_ratio: area / front.to_array()[axis as usize].abs().max(1e-3 * area),
     }
 }

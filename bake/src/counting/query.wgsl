@@ -41,6 +41,8 @@ struct GlintFacingPlane {
     d_dx: vec2f,
     d_dy: vec2f,
     seed: u32,
+    // Area of a pixel on the surface over that in the plane, from 1: a factor on the density of facets.
+    area_ratio: f32,
 }
 
 // Area of a pixel whose place changes by `d_dx` and `d_dy` along the screen's axes.
@@ -209,7 +211,9 @@ fn glint_facing_plane(position: vec3f, d_dx: vec3f, d_dy: vec3f, normal: vec3f, 
     let limit = vec3f(GLINT_LONGEST);
     let dx = clamp(d_dx, -limit, limit);
     let dy = clamp(d_dy, -limit, limit);
-    let lod = 0.5 * glint_quick_log2(max(length(cross(dx, dy)), 1.0e-14));
+    let front = cross(dx, dy);
+    let area = max(length(front), 1.0e-14);
+    let lod = 0.5 * glint_quick_log2(area);
     let patch_number = glint_patch_level(i32(floor(clamp(lod, -GLINT_MAX_CELL_LEVEL, GLINT_MAX_CELL_LEVEL - 1.0))));
     let place = clamp(position * glint_level_scale(patch_number), vec3f(-GLINT_FARTHEST), vec3f(GLINT_FARTHEST));
     let at = vec3i(floor(place));
@@ -218,7 +222,9 @@ fn glint_facing_plane(position: vec3f, d_dx: vec3f, d_dy: vec3f, normal: vec3f, 
     let chosen = f32(state.b >> 8u) * (1.0 / 16777216.0);
     let shares = normal * normal;
     let axis = select(select(2u, 1u, chosen < shares.x + shares.y), 0u, chosen < shares.x);
+    let seen_area = abs(select(select(front.z, front.y, axis == 1u), front.x, axis == 0u));
     return GlintFacingPlane(
         glint_plane_part(position, axis), glint_plane_part(dx, axis), glint_plane_part(dy, axis), seed ^ (axis << 30u),
+        area / max(seen_area, 1.0e-3 * area),
     );
 }

@@ -148,9 +148,11 @@ fn seen_solid_angle(material: CountedMaterial, solid_angle: f32) -> f32 {
 /// across are shortened by h·o, which makes it a disk; cells are squares of the disk's area, which overlap as disks do within a tenth.
 pub fn light_place(view: Vec3, half: Vec3, solid_angle: f32) -> Vec2 {
     let flat = Vec2::new(view.x, view.y);
-    let across = Vec2::new(-flat.y, flat.x) / flat.dot(flat).max(1e-12).sqrt();
+    // The same quotient as in `microfacet_under_cone`.
+    let inverse = 1.0 / flat.dot(flat).max(1e-12);
+    let across = Vec2::new(-flat.y, flat.x);
     let normal = Vec2::new(half.x, half.y);
-    let shortened = normal - across * ((1.0 - view.dot(half)) * across.dot(normal));
+    let shortened = normal - across * ((1.0 - view.dot(half)) * across.dot(normal) * inverse);
     shortened * (2.0 / solid_angle.sqrt())
 }
 

@@ -117,8 +117,10 @@ fn glint_seen_solid_angle(material: GlintCountedMaterial, solid_angle: f32) -> f
 
 // Place, in cells as wide as a light of `solid_angle`, of the normal `half` that facets need to reflect it.
 fn glint_light_place(view: vec3f, half: vec3f, solid_angle: f32) -> vec2f {
-    let across = vec2f(-view.y, view.x) * inverseSqrt(max(dot(view.xy, view.xy), 1.0e-12));
-    let shortened = half.xy - across * ((1.0 - dot(view, half)) * dot(across, half.xy));
+    // The same quotient as in glint_microfacet_under_cone.
+    let inverse = 1.0 / max(dot(view.xy, view.xy), 1.0e-12);
+    let across = vec2f(-view.y, view.x);
+    let shortened = half.xy - across * ((1.0 - dot(view, half)) * dot(across, half.xy) * inverse);
     return shortened * (2.0 * inverseSqrt(solid_angle));
 }
 

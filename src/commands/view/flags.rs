@@ -182,6 +182,11 @@ pub struct MaterialFlags {
     /// By how much the eye turns, in degrees, until counted facets under an environment are others; 0 for never
     #[arg(long, value_name = "DEGREES", value_parser = values::not_negative)]
     pub sky_spread: Option<f32>,
+    /// Counted facets lie in space and not in uv: for meshes without uv
+    ///
+    /// A surface unit is a world unit then, times --uv-scale.
+    #[arg(long)]
+    pub in_space: bool,
     /// Lobes of directional roughness of area lights, 0 to 9
     ///
     /// 0 is round.

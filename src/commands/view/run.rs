@@ -17,8 +17,8 @@ use glint_view::bench::{BenchSettings, Setup, measure, table};
 use glint_view::gpu::{AdapterChoice, Gpu, GpuError};
 use glint_view::methods::textures::Textured;
 use glint_view::render::{
-    LightKind, Material, Method, Overlay, Picture, Renderer, SWAP_LAYERS, Subject, ToneMapping, View, baseline_of,
-    picture,
+    IN_SPACE, LightKind, Material, Method, Overlay, Picture, Renderer, SWAP_LAYERS, Subject, ToneMapping, View,
+    baseline_of, picture,
 };
 use glint_view::scene::{Mesh, MeshError, Orbit, Placement};
 use glint_view::settings::{Against, Layout, Settings, cone_solid_angle};
@@ -328,6 +328,9 @@ fn apply(flags: &MaterialFlags, material: &mut Material) {
     material.f0 = flags.f0.unwrap_or(material.f0);
     set(&mut material.facet_spread, flags.facet_spread.map(f64::to_radians));
     material.sky_spread = flags.sky_spread.map_or(material.sky_spread, f32::to_radians);
+    if flags.in_space {
+        material.switches |= IN_SPACE;
+    }
     material.lobes = flags.lobes.unwrap_or(material.lobes);
     material.seed = flags.seed.unwrap_or(material.seed);
     if flags.swap_layers {

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 const EXAMPLES: &str = "\
 Examples:
   glint-bake glints -o flakes.glintpack
-  glint-bake glints --alpha 0.15 --f0 0.6,0.05,0.03 --diffuse 0.1,0,0 --coat 1 -o paint.glintpack
+  glint-bake glints --alpha 0.15 --f0 0.6,0.05,0.03 --diffuse 0.1,0,0 --coat 1 -o lacquer.glintpack
   glint-bake glints --density 2e5 --colour 1,0.8,0.4 --colour 0.4,0.7,1 -o glitter.glintpack";
 
 /// Bake a material of counted facets: procedural glints under every light, without a normal map

@@ -16,5 +16,6 @@ pub use present::{Display, Overlay, ToneMapping};
 pub use renderer::{Compare, Renderer, Side, View};
 pub use subject::{LightKind, Method, Subject, baseline_of};
 pub use uniforms::{
-    ACCURATE, Camera, Environment, Lights, MAX_POINT_LIGHTS, Material, PointLight, RectLight, SWAP_LAYERS, Scene, Sun,
+    ACCURATE, Camera, Environment, IN_SPACE, Lights, MAX_POINT_LIGHTS, Material, PointLight, RectLight, SWAP_LAYERS,
+    Scene, Sun,
 };

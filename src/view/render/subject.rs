@@ -1,6 +1,6 @@
 //! What can be shown of a pack: a method with its data, its parameters, and the WGSL that draws it.
 
-use super::uniforms::{ACCURATE, Lights, MAX_POINT_LIGHTS, Material};
+use super::uniforms::{ACCURATE, IN_SPACE, Lights, MAX_POINT_LIGHTS, Material};
 use crate::gpu::Resources;
 use std::rc::Rc;
 
@@ -140,9 +140,9 @@ impl Method {
             ],
             Method::NdfMaps => vec![asks("NDF_MAPS_ACCURATE", material.switches & ACCURATE != 0)],
             Method::Glints => vec![
-                ("GLINTS_TARGET", f64::from(material.normal_target)),
                 asks("GLINTS_COLOURED", material.colours > 0),
                 asks("GLINTS_PARTIAL", material.relative_area < 1.0),
+                asks("GLINTS_IN_SPACE", material.switches & IN_SPACE != 0),
             ],
             Method::AreaLight => vec![asks("AREA_LIGHT_DIRECTIONAL", material.lobes > 0)],
             _ => Vec::new(),
@@ -183,6 +183,7 @@ impl Subject {
     /// All pipeline constants of its program for a material in these lights.
     pub(super) fn pipeline_constants(&self, material: &Material, lights: &Lights) -> Vec<(&'static str, f64)> {
         let mut constants = self.constants.clone();
+        constants.push(("NORMAL_TARGET", f64::from(material.normal_target)));
         constants.extend(self.method.constants(material));
         if self.method == Method::Glints {
             constants.push(("GLINTS_POINTS", lights.points.len().min(MAX_POINT_LIGHTS) as f64));

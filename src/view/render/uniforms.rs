@@ -12,6 +12,9 @@ pub const SWAP_LAYERS: u32 = 1;
 /// Bit of [`Material::switches`]: NDF maps are read with the settings that their accuracy is measured with.
 pub const ACCURATE: u32 = 2;
 
+/// Bit of [`Material::switches`]: counted facets lie in space and not in uv.
+pub const IN_SPACE: u32 = 4;
+
 /// Where the camera is. +Y of the world is up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {

@@ -53,7 +53,7 @@ struct GlintsAnswer {
     cone_state: vec2u,
     rect_state: vec2u,
     plane: u32,
-    unused_1: u32,
+    area_ratio: f32,
     words: vec4f,
 }
 
@@ -84,7 +84,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         glint_counted_pdf(counted, q.view, q.light), rect.beside, glint_counted_pdf(counted, q.view, sampled), sampled, 0u,
         glint_four_lights(surface, cone, rect, glint_no_light(), glint_no_light(), drawn), surface.facets, ratios.xy, surface.whole,
         glint_microfacet_area(GlintSmoothSurface(q.alpha * q.alpha, q.normal_target)),
-        vec2u(surface.cell.a, surface.cell.b), vec2u(cone.state.a, cone.state.b), vec2u(rect.state.a, rect.state.b), plane.seed, 0u,
+        vec2u(surface.cell.a, surface.cell.b), vec2u(cone.state.a, cone.state.b), vec2u(rect.state.a, rect.state.b), plane.seed, plane.area_ratio,
         glint_sky_words(surface, 4u).a,
     );
 }

@@ -14,7 +14,7 @@ override DICTIONARY_COLOURED: bool = true;
 fn shade_dictionary_brdf(pixel: GlintPixelOnSurface, view: vec3f, light: vec3f) -> vec3f {
     let parameters = GlintDictionaryMaterial(
         material.alpha,
-        material.normal_target,
+        NORMAL_TARGET,
         material.density,
         select(1.0, material.relative_area, DICTIONARY_PARTIAL),
         select(0.0, material.density_randomisation, DICTIONARY_RANDOMISED),

@@ -8,12 +8,12 @@
 
 // Points that are on, besides the directional light.
 override GLINTS_POINTS: u32 = 0u;
-// Distribution of slopes: GlintCountedMaterial's normal_target, known when a pipeline is made, since some devices take both ways of a branch.
-override GLINTS_TARGET: u32 = 1u;
 // What a material has; false leaves its part out of the program.
 override GLINTS_COLOURED: bool = true;
 override GLINTS_TURNED: bool = true;
 override GLINTS_PARTIAL: bool = true;
+// Whether facets lie in space and not in uv.
+override GLINTS_IN_SPACE: bool = false;
 override GLINTS_DIFFUSE: bool = true;
 override GLINTS_COATED: bool = true;
 
@@ -38,23 +38,35 @@ fn shade_glints_layers() -> GlintLayers {
     );
 }
 
+// Where the pixel lies among facets.
+fn shade_glints_plane(point: ViewPoint) -> GlintFacingPlane {
+    if !GLINTS_IN_SPACE {
+        return GlintFacingPlane(point.uv, point.d_dx, point.d_dy, material.seed, 1.0);
+    }
+    let scale = scene.uv_scale;
+    return glint_facing_plane(
+        point.position * scale, point.position_dx * scale, point.position_dy * scale, point.normal, material.seed,
+    );
+}
+
 fn shade_glints_surface(point: ViewPoint) -> GlintCountedSurface {
+    let plane = shade_glints_plane(point);
     let counted = GlintCountedMaterial(
         material.f0,
-        GLINTS_TARGET,
+        NORMAL_TARGET,
         material.alpha,
         select(vec2f(1.0, 0.0), counted_material.turn, GLINTS_TURNED),
         select(vec3f(1.0), material.mean_colour, GLINTS_COLOURED),
         select(0u, material.colours, GLINTS_COLOURED),
-        material.density,
+        material.density * plane.area_ratio,
         select(1.0, material.relative_area, GLINTS_PARTIAL),
         material.facet_area,
         material.facet_spread,
         material.sky_spread,
-        material.seed,
+        plane.seed,
         shade_glints_layers(),
     );
-    return glint_counted_surface(counted, point.uv, point.d_dx, point.d_dy, point.view);
+    return glint_counted_surface(counted, plane.position, plane.d_dx, plane.d_dy, point.view);
 }
 
 fn shade_glints_sun(point: ViewPoint, surface: GlintCountedSurface) -> GlintFacetLight {
@@ -151,5 +163,6 @@ fn shade_lights(point: ViewPoint, random: vec2f) -> vec3f {
 }
 
 fn shade_lod(point: ViewPoint) -> f32 {
-    return glint_footprint_box(point.d_dx, point.d_dy).lod;
+    let plane = shade_glints_plane(point);
+    return glint_footprint_box(plane.d_dx, plane.d_dy).lod;
 }

@@ -8,9 +8,11 @@ fn shade_smooth_brdf(view: vec3f, light: vec3f) -> vec3f {
     let v = glint_normal_to_slope(half) / material.alpha;
     let q = dot(v, v);
     let area = 3.14159265 * material.alpha.x * material.alpha.y;
-    var sdf = exp(-q) / area;
-    if material.normal_target == 1u {
+    var sdf = 0.0;
+    if NORMAL_TARGET == 1u {
         sdf = 1.0 / (area * (1.0 + q) * (1.0 + q));
+    } else {
+        sdf = exp(-q) / area;
     }
     return glint_facet_brdf(glint_sdf_to_ndf(vec3f(sdf), half.z), material.f0, view, light);
 }

@@ -26,6 +26,10 @@ const VIEW_LIGHT_ENVIRONMENT: u32 = 8u;
 // The room of view_sky.wgsl.
 const VIEW_LIGHT_ROOM: u32 = 16u;
 
+// Distribution of slopes of methods that have one, 0 Beckmann, 1 GGX: known when a pipeline is made, since some devices take both ways of a
+// branch.
+override NORMAL_TARGET: u32 = 0u;
+
 struct ViewPointLight {
     position: vec3f,
     // Radius of the sphere that it is as counted facets see it.
@@ -71,7 +75,7 @@ struct ViewMaterial {
     intrinsic_roughness: f32,
     // Roughness along the tangent axes: of the smooth BRDF, the dictionary, environments and the base of area lights.
     alpha: vec2f,
-    // 0 Beckmann, 1 GGX.
+    // 0 Beckmann, 1 GGX; programs have it as NORMAL_TARGET.
     normal_target: u32,
     // Facets on one surface unit squared.
     density: f32,
@@ -107,8 +111,11 @@ struct ViewPoint {
     d_dy: vec2f,
     // Unit direction to the camera in the tangent frame.
     view: vec3f,
-    // World position, and unit tangent (along +u), bitangent (against +v) and normal.
+    // World position and its derivatives along the screen's axes, a pixel.
     position: vec3f,
+    position_dx: vec3f,
+    position_dy: vec3f,
+    // Unit tangent (along +u), bitangent (against +v) and normal.
     tangent: vec3f,
     bitangent: vec3f,
     normal: vec3f,

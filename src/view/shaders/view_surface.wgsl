@@ -49,6 +49,8 @@ fn view_point(f: ViewFragment, front: bool) -> ViewPoint {
     point.d_dx = dpdx(point.uv);
     point.d_dy = dpdy(point.uv);
     point.position = f.position;
+    point.position_dx = dpdx(f.position);
+    point.position_dy = dpdy(f.position);
     point.normal = normal;
     point.tangent = tangent;
     point.bitangent = bitangent;

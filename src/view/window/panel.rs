@@ -2,7 +2,7 @@
 
 use super::controls::{Action, Controls, Mode};
 use super::lights;
-use crate::render::{ACCURATE, Material, Method, Overlay, SWAP_LAYERS, Subject, ToneMapping};
+use crate::render::{ACCURATE, IN_SPACE, Material, Method, Overlay, SWAP_LAYERS, Subject, ToneMapping};
 use crate::settings::{Against, Settings};
 use egui::{Context, Slider, Ui};
 
@@ -122,7 +122,7 @@ fn parameters(ui: &mut Ui, method: Method, material: &mut Material) {
         Method::NdfMaps => {
             texels(ui, material);
             switch(ui, material, SWAP_LAYERS, "exchange the layers");
-            switch(ui, material, ACCURATE, "finer tiles: slower, more accurate");
+            switch(ui, material, ACCURATE, "finer probes: slower, more accurate");
         }
         Method::Lobes | Method::Surface => {
             let slider = Slider::new(&mut material.intrinsic_roughness, 0.001..=0.3).logarithmic(true);
@@ -139,6 +139,7 @@ fn parameters(ui: &mut Ui, method: Method, material: &mut Material) {
             let slider = Slider::new(&mut material.facet_spread, 1e-4..=0.5).logarithmic(true);
             ui.add(slider.text("spread of a facet, radians"));
             ui.add(Slider::new(&mut material.sky_spread, 0.0..=0.5).text("spread under an environment, radians"));
+            switch(ui, material, IN_SPACE, "facets in space, not in uv");
         }
         Method::AreaLight => {
             base_roughness(ui, material);

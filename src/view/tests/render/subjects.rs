@@ -115,7 +115,8 @@ fn area_light_pack() -> Pack {
 
 fn glints_pack() -> Pack {
     let colours = vec![[1.0, 0.4, 0.2], [0.3, 0.6, 1.0]];
-    let options = GlintsOptions { colours, relative_area: 0.8, ..GlintsOptions::default() };
+    let options =
+        GlintsOptions { colours, relative_area: 0.8, diffuse: [0.05; 3], coat: 0.5, ..GlintsOptions::default() };
     pack(glints::sections::to_sections("flakes", &glints::bake(&options, &Silent).unwrap(), Codec::None))
 }
 
