@@ -122,29 +122,34 @@ fn rect_at(direction: Vec3, degrees: f32) -> RectLight {
 #[test]
 fn chances_of_rectangles_are_near_those_of_the_definition() {
     println!("alpha  view  width  chance exact off");
-    let (mut sum, mut worst, mut count) = (0.0, 0.0f64, 0.0);
-    for alpha in [0.1f32, 0.3, 0.6] {
-        let options = options(Slopes::Ggx, [alpha; 2]);
-        let (facets, tables) = baked(&options);
-        let reference = ReferenceSurface::new(&options);
-        let area = reference.facet_area();
-        for angle in [0.0f32, 40.0, 60.0] {
-            let view = towards(angle, 0.0);
-            for (degrees, aside) in [(10.0f32, 0.0f32), (40.0, 0.0), (20.0, 25.0)] {
-                let light = rect_at(towards(angle, 180.0 + aside), degrees);
-                let found = f64::from(rect_facets(&tables, pixel(&facets, Vec2::ZERO, view), &light).chance);
-                let corners = light.corners.map(|corner| corner.as_dvec3());
-                let exact = reference.rect_chance(view.as_dvec3(), corners, area);
-                let off = found / exact - 1.0;
-                println!("{alpha:5.2} {angle:4.0}° {degrees:4.0}° {found:.4} {exact:.4} {off:+.3}");
-                sum += off.abs();
-                worst = worst.max(off.abs());
-                count += 1.0;
+    // Lobes without tails hold next to nothing of a rectangle that lies beside them.
+    for (slopes, alphas, most) in
+        [(Slopes::Ggx, &[0.1f32, 0.3, 0.6][..], [0.025, 0.11]), (Slopes::Beckmann, &[0.3, 0.6], [0.025, 0.1])]
+    {
+        let (mut sum, mut worst, mut count) = (0.0, 0.0f64, 0.0);
+        for &alpha in alphas {
+            let options = options(slopes, [alpha; 2]);
+            let (facets, tables) = baked(&options);
+            let reference = ReferenceSurface::new(&options);
+            let area = reference.facet_area();
+            for angle in [0.0f32, 40.0, 60.0] {
+                let view = towards(angle, 0.0);
+                for (degrees, aside) in [(10.0f32, 0.0f32), (40.0, 0.0), (20.0, 25.0)] {
+                    let light = rect_at(towards(angle, 180.0 + aside), degrees);
+                    let found = f64::from(rect_facets(&tables, pixel(&facets, Vec2::ZERO, view), &light).chance);
+                    let corners = light.corners.map(|corner| corner.as_dvec3());
+                    let exact = reference.rect_chance(view.as_dvec3(), corners, area);
+                    let off = found / exact - 1.0;
+                    println!("{alpha:5.2} {angle:4.0}° {degrees:4.0}° {found:.4} {exact:.4} {off:+.3}");
+                    sum += off.abs();
+                    worst = worst.max(off.abs());
+                    count += 1.0;
+                }
             }
         }
+        println!("{slopes:?}: mean {:.3}, worst {worst:.3}", sum / count);
+        assert!(sum / count < most[0] && worst < most[1], "{slopes:?}: {} {worst}", sum / count);
     }
-    println!("mean {:.3}, worst {worst:.3}", sum / count);
-    assert!(sum / count < 0.04 && worst < 0.15, "{} {worst}", sum / count);
 }
 
 /// Mean over seeds and its standard error.

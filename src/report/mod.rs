@@ -11,6 +11,7 @@ mod document;
 mod environment;
 mod environment_glints;
 mod frames;
+mod glints;
 mod lobes;
 mod ndf_maps;
 mod settings;
@@ -37,7 +38,7 @@ pub struct Report {
 }
 
 /// All reports, in the order in which they are made.
-pub const REPORTS: [Report; 10] = [
+pub const REPORTS: [Report; 11] = [
     Report {
         name: "ndf-maps",
         about: "NDF maps of small examples: bytes, time and error of nodes, footprints and run-time settings",
@@ -55,6 +56,12 @@ pub const REPORTS: [Report; 10] = [
         about: "binomial draws: error and cost against the paper's and against variants",
         check: |_| Ok(()),
         measure: counting::measure,
+    },
+    Report {
+        name: "glints",
+        about: "counted facets: chances against quadrature, hits against placed facets, time by lights",
+        check: |_| Ok(()),
+        measure: glints::measure,
     },
     Report {
         name: "environment",

@@ -48,9 +48,18 @@ fn assert_svg(path: &Path) {
 fn all_reports_are_listed_and_what_is_missing_is_said() {
     let folder = tempfile::tempdir().unwrap();
     let list = bake(folder.path(), &["report", "--list", "--data", "nowhere"]).ok().stdout;
-    for name in
-        ["ndf-maps", "dictionary", "counting", "environment", "area-light", "lobes", "surface", "textures", "frames"]
-    {
+    for name in [
+        "ndf-maps",
+        "dictionary",
+        "counting",
+        "glints",
+        "environment",
+        "area-light",
+        "lobes",
+        "surface",
+        "textures",
+        "frames",
+    ] {
         assert!(list.lines().any(|line| line.starts_with(&format!("{name} "))), "{name} is missing from:\n{list}");
     }
     assert!(list.contains("cannot be made here: nowhere/tiny/brushed_16x16.png"), "{list}");
@@ -94,6 +103,16 @@ fn the_headline_reaches_the_readme_and_nothing_else_of_it_changes() {
     let headline = page.lines().find(|line| line.starts_with("Default dictionary (")).unwrap();
     assert!(headline.contains("KiB, baked in"), "{headline}");
     assert_eq!(fs::read_to_string(&readme).unwrap(), format!("# A\n\n{headline}\n\nB\n"));
+}
+
+#[test]
+fn counted_facets_are_measured_without_any_data() {
+    let folder = tempfile::tempdir().unwrap();
+    bake(folder.path(), &["report", "glints", "--quick", "-o", "out"]).ok();
+    let page = assert_page(&folder.path().join("out/glints.md"));
+    for part in ["| Beckmann | 0.03 |", "| 128² | 2.0000 |", "| a rectangle |", "](glints.svg)"] {
+        assert!(page.contains(part), "{part} is missing from:\n{page}");
+    }
 }
 
 #[test]

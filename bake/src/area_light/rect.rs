@@ -51,6 +51,9 @@ pub struct LobeLight {
     pub terms: Vec4,
 }
 
+/// Solid angle below which a rectangle is as flat as it is seen, to .3 %.
+const FLAT_ANGLE: f32 = 0.01;
+
 /// atan2(sine, cosine) for sine ≥ 0, not both 0.
 fn angle(sine: f32, cosine: f32) -> f32 {
     sine.atan2(cosine)
@@ -122,6 +125,30 @@ pub fn quad_form_factor(corners: [Vec3; 4]) -> f32 {
     sum = cut_edge(sum, c, d);
     sum = cut_edge(sum, d, a);
     (sum.form_factor + edge_form_factor(sum.down, sum.up)).abs().min(1.0)
+}
+
+/// Solid angle of a triangle of unit vectors (Van Oosterom and Strackee 1983), in steradians.
+fn triangle_solid_angle(a: Vec3, b: Vec3, c: Vec3) -> f32 {
+    let sine = a.dot(b.cross(c)).abs();
+    if sine <= 0.0 || sine.is_nan() {
+        return 0.0;
+    }
+    2.0 * angle(sine, 1.0 + a.dot(b) + b.dot(c) + c.dot(a))
+}
+
+/// Solid angle that a rectangle fills as seen from the origin, in steradians. A small one's is its area as seen from there: triangles would lose
+/// its digits.
+pub fn rect_solid_angle(light: &RectLight) -> f32 {
+    let [a, b, c, d] = light.corners;
+    let middle = (a + b + c + d) * 0.25;
+    let distance2 = middle.dot(middle).max(1e-20);
+    let front = (b - a).cross(d - a);
+    let flat_angle = front.dot(middle).abs() / (distance2 * distance2.sqrt());
+    if flat_angle < FLAT_ANGLE {
+        return flat_angle;
+    }
+    let [a, b, c, d] = light.corners.map(direction);
+    triangle_solid_angle(a, b, c) + triangle_solid_angle(a, c, d)
 }
 
 /// Where, in texels, the tables hold a view cosine and roughness.

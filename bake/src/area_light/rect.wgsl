@@ -16,6 +16,8 @@ const GLINT_LTC_SIZE: f32 = 64.0;
 const GLINT_LTC_MIN_VIEW_COSINE: f32 = 1.0e-3;
 // Least roughness the tables are read at.
 const GLINT_LTC_MIN_ALPHA: f32 = 1.0e-3;
+// Solid angle below which a rectangle is as flat as it is seen, to .3 %.
+const GLINT_LTC_FLAT_ANGLE: f32 = 0.01;
 const GLINT_LTC_INV_TWO_PI: f32 = 0.15915494;
 const GLINT_LTC_MAX_FLOAT: f32 = 3.4028234e38;
 
@@ -134,6 +136,32 @@ fn glint_quad_form_factor(corner_0: vec3f, corner_1: vec3f, corner_2: vec3f, cor
     sum = glint_cut_edge(sum, c, d);
     sum = glint_cut_edge(sum, d, a);
     return min(abs(sum.form_factor + glint_edge_form_factor(sum.down, sum.up)), 1.0);
+}
+
+// Solid angle of a triangle of unit vectors (Van Oosterom and Strackee 1983), in steradians.
+fn glint_triangle_solid_angle(a: vec3f, b: vec3f, c: vec3f) -> f32 {
+    let sine = abs(dot(a, cross(b, c)));
+    if !(sine > 0.0) {
+        return 0.0;
+    }
+    return 2.0 * glint_angle(sine, 1.0 + dot(a, b) + dot(b, c) + dot(c, a));
+}
+
+// Solid angle that a rectangle fills as seen from the origin, in steradians. A small one's is its area as seen from there: triangles would lose
+// its digits.
+fn glint_rect_solid_angle(light: GlintRectLight) -> f32 {
+    let middle = (light.corner_0 + light.corner_1 + light.corner_2 + light.corner_3) * 0.25;
+    let distance2 = max(dot(middle, middle), 1.0e-20);
+    let front = cross(light.corner_1 - light.corner_0, light.corner_3 - light.corner_0);
+    let flat_angle = abs(dot(front, middle)) / (distance2 * sqrt(distance2));
+    if flat_angle < GLINT_LTC_FLAT_ANGLE {
+        return flat_angle;
+    }
+    let a = glint_direction(light.corner_0);
+    let b = glint_direction(light.corner_1);
+    let c = glint_direction(light.corner_2);
+    let d = glint_direction(light.corner_3);
+    return glint_triangle_solid_angle(a, b, c) + glint_triangle_solid_angle(a, c, d);
 }
 
 // Where, in texels, the tables hold a view cosine and roughness.

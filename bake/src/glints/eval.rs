@@ -9,22 +9,25 @@
 //! - Facets reflect a cone, not a line ([`CountedMaterial::facet_spread`]): a light without extent is as wide as that cone, so its
 //!   facets are few and bright but never so few that none is seen. Extents add up as squares.
 //! - Four small lights are drawn at a time, as four nodes of [`binomial`](crate::counting::binomial()) in a shader are.
-//! - A rectangle's chance is its share of the linearly transformed cosine that stands for GGX's lobe, with masking taken back
-//!   at its middle: facets reflect what is masked, too. Beckmann surfaces take GGX's lobe.
+//! - A rectangle that is small beside the lobe has the chance of a cone. That of a wide one is its share of the linearly transformed cosine
+//!   that stands for GGX's lobe, with masking taken back at its middle: facets reflect what is masked, too. On Beckmann surfaces, whose lobes the tables
+//!   do not hold, every rectangle has the chance of a cone.
 //! - Lights are drawn one by one, a sky's levels together. Facets of two lights in one cell of directions are the same; others are drawn
 //!   as if a facet could reflect both, which the paper's multinomial forbids: the covariance that is left out is −N p q for chances p and q.
 //! - Facets may have colours of a palette ([`facet_colour`]), and share the surface with a smooth part ([`CountedMaterial::relative_area`]).
 
 use super::layers::{Layers, coat_through, cone_layers, rect_layers};
 use crate::area_light::baked::Tables;
-use crate::area_light::rect::{RectLight, Roughness, faces, lobe_light};
+use crate::area_light::rect::{RectLight, Roughness, faces, lobe_light, rect_solid_angle};
 use crate::brdf::{fresnel, half_vector};
 use crate::counting::eval::{Count, MAX_LEVELS, count_value, unit_from_bits, whole_binomial, whole_count};
 use crate::counting::query::{
     angle_state, cell_bits, cell_words, facet_cell, footprint_area, footprint_box, footprint_facets,
 };
 use crate::hash::CellState;
-use crate::microfacet::{SmoothSurface, microfacet_lambda, microfacet_masked, microfacet_ndf, microfacet_under_cone};
+use crate::microfacet::{
+    GGX, SmoothSurface, microfacet_lambda, microfacet_masked, microfacet_ndf, microfacet_under_cone,
+};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
@@ -40,6 +43,10 @@ const LEAST_EXPECTED: f32 = 1e-37;
 const LEAST_COSINE: f32 = 1e-4;
 /// Widest cone of a light, in steradians: a hemisphere.
 const WIDEST: f32 = 2.0 * PI;
+/// From where to where the chance of a rectangle goes over from that of a cone to its share of the lobe, by solid angles over the lobe's.
+const WIDE_RECT: [f32; 2] = [0.06, 0.15];
+/// Least part of that share that is a chance: where a lobe without tails is all but 0, the tables' lobe has tails.
+const LEAST_SHARE: f32 = 0.05;
 
 /// A material of counted facets. Roughness, density and turn may differ from pixel to pixel; `facet_area` goes with the roughness.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -193,21 +200,30 @@ pub fn rect_facets(tables: &Tables, surface: CountedSurface, light: &RectLight) 
     let form_factor = if faces(&rect) { found.form_factor } else { 0.0 };
     let [a, b, c, d] = rect.corners;
     let middle = (a + b + c + d) * 0.25;
-    let distance2 = middle.dot(middle).max(1e-20);
-    let direction = middle / distance2.sqrt();
-    let front = (b - a).cross(d - a);
-    let solid_angle = (front.dot(direction).abs() / distance2).min(WIDEST);
+    let direction = middle / middle.dot(middle).max(1e-20).sqrt();
     let half = half_vector(surface.view, direction);
-    let place = light_place(surface.view, half, seen_solid_angle(material, solid_angle));
+    let solid_angle = seen_solid_angle(material, rect_solid_angle(&rect));
+    let place = light_place(surface.view, half, solid_angle);
     let reflectance = material.f0 * found.terms.x + (Vec3::ONE - material.f0) * found.terms.y;
     // From what reaches the eye to what facets reflect: masking and the view's cosine, at the rectangle's middle.
     let smooth_surface = SmoothSurface { alpha2: alpha * alpha, normal_target: material.normal_target };
     let masked = 1.0 + microfacet_lambda(smooth_surface, surface.view) + microfacet_lambda(smooth_surface, direction);
     let cos_h = surface.view.dot(half).max(LEAST_COSINE);
     let facets = found.terms.x * surface.view.z.max(LEAST_COSINE) * masked / (cos_h * material.facet_area);
+    let share = form_factor * facets;
+    // As a cone.
+    let seen = microfacet_under_cone(smooth_surface, surface.view, solid_angle, cos_h);
+    let cone = microfacet_ndf(seen, half) * solid_angle / (4.0 * cos_h * material.facet_area);
+    let chance = if material.normal_target == GGX {
+        let width = solid_angle / (4.0 * PI * alpha.x * alpha.y);
+        let wide = ((width - WIDE_RECT[0]) / (WIDE_RECT[1] - WIDE_RECT[0])).clamp(0.0, 1.0);
+        cone + (share - cone) * wide
+    } else {
+        cone.max(LEAST_SHARE * share)
+    };
     FacetLight {
         radiance: reflectance * (form_factor * light.radiance * coat_through(material.layers, surface.view.z)),
-        chance: (form_factor * facets).min(1.0),
+        chance: chance.min(1.0),
         beside: rect_layers(tables, material.layers, material.f0, surface.view, &rect),
         state: angle_state(surface.cell, place),
     }

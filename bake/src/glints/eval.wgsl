@@ -23,6 +23,10 @@ const GLINT_LEAST_EXPECTED: f32 = 1.0e-37;
 const GLINT_LEAST_COSINE: f32 = 1.0e-4;
 // A hemisphere.
 const GLINT_WIDEST: f32 = 6.2831853;
+// From where to where the chance of a rectangle goes over from that of a cone to its share of the lobe, by solid angles over the lobe's.
+const GLINT_WIDE_RECT: vec2f = vec2f(0.06, 0.15);
+// Least part of that share that is a chance: where a lobe without tails is all but 0, the tables' lobe has tails.
+const GLINT_LEAST_SHARE: f32 = 0.05;
 
 // A material of counted facets: section GLUB. Roughness, density and turn may differ from pixel to pixel; `facet_area` goes with the
 // roughness.
@@ -160,12 +164,10 @@ fn glint_rect_facets(surface: GlintCountedSurface, light: GlintRectLight) -> Gli
     let found = glint_lobe_light(vec3f(0.0, 0.0, 1.0), lobe, surface.view, rect);
     let form_factor = select(0.0, found.form_factor, glint_faces(rect));
     let middle = (rect.corner_0 + rect.corner_1 + rect.corner_2 + rect.corner_3) * 0.25;
-    let distance2 = max(dot(middle, middle), 1.0e-20);
-    let direction = middle * inverseSqrt(distance2);
-    let front = cross(rect.corner_1 - rect.corner_0, rect.corner_3 - rect.corner_0);
-    let solid_angle = min(abs(dot(front, direction)) / distance2, GLINT_WIDEST);
+    let direction = middle * inverseSqrt(max(dot(middle, middle), 1.0e-20));
     let half = glint_half_vector(surface.view, direction);
-    let place = glint_light_place(surface.view, half, glint_seen_solid_angle(material, solid_angle));
+    let solid_angle = glint_seen_solid_angle(material, glint_rect_solid_angle(rect));
+    let place = glint_light_place(surface.view, half, solid_angle);
     let reflectance = material.f0 * found.terms.x + (vec3f(1.0) - material.f0) * found.terms.y;
     // From what reaches the eye to what facets reflect: masking and the view's cosine, at the rectangle's middle.
     let smooth_surface = GlintSmoothSurface(alpha * alpha, material.normal_target);
@@ -173,9 +175,19 @@ fn glint_rect_facets(surface: GlintCountedSurface, light: GlintRectLight) -> Gli
         + glint_microfacet_lambda(smooth_surface, direction);
     let cos_h = max(dot(surface.view, half), GLINT_LEAST_COSINE);
     let facets = found.terms.x * max(surface.view.z, GLINT_LEAST_COSINE) * masked / (cos_h * material.facet_area);
+    let share = form_factor * facets;
+    // As a cone.
+    let seen = glint_microfacet_under_cone(smooth_surface, surface.view, solid_angle, cos_h);
+    let cone = glint_microfacet_ndf(seen, half) * solid_angle / (4.0 * cos_h * material.facet_area);
+    var chance = max(cone, GLINT_LEAST_SHARE * share);
+    if material.normal_target == GLINT_MICROFACET_GGX {
+        let width = solid_angle / (12.566371 * alpha.x * alpha.y);
+        let wide = clamp((width - GLINT_WIDE_RECT.x) / (GLINT_WIDE_RECT.y - GLINT_WIDE_RECT.x), 0.0, 1.0);
+        chance = cone + (share - cone) * wide;
+    }
     return GlintFacetLight(
         reflectance * light.radiance * (form_factor * glint_coat_through(material.layers, surface.view.z)),
-        min(form_factor * facets, 1.0),
+        min(chance, 1.0),
         glint_rect_layers(material.layers, material.f0, surface.view, rect),
         glint_angle_state(surface.cell, place),
     );
