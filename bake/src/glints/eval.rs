@@ -123,6 +123,11 @@ pub fn no_light() -> FacetLight {
     FacetLight { radiance: Vec3::ZERO, chance: 0.0, beside: Vec3::ZERO, state: CellState { a: 0, b: 0 } }
 }
 
+/// The smooth surface that a material's facets converge to.
+pub(super) fn smooth_surface(material: CountedMaterial) -> SmoothSurface {
+    SmoothSurface { alpha2: material.alpha * material.alpha, normal_target: material.normal_target }
+}
+
 /// From the tangent frame to that of the roughness.
 pub(super) fn turned(turn: Vec2, v: Vec3) -> Vec3 {
     Vec3::new(turn.x * v.x + turn.y * v.y, turn.x * v.y - turn.y * v.x, v.z)
@@ -166,8 +171,7 @@ pub fn light_place(view: Vec3, half: Vec3, solid_angle: f32) -> Vec2 {
 /// A small cone on the surface.
 pub fn cone_light(surface: CountedSurface, light: ConeLight) -> FacetLight {
     let material = surface.material;
-    let smooth_surface =
-        SmoothSurface { alpha2: material.alpha * material.alpha, normal_target: material.normal_target };
+    let smooth_surface = smooth_surface(material);
     let direction = turned(material.turn, light.direction);
     let half = half_vector(surface.view, direction);
     let solid_angle = seen_solid_angle(material, light.solid_angle_sr);
@@ -206,7 +210,7 @@ pub fn rect_facets(tables: &Tables, surface: CountedSurface, light: &RectLight) 
     let place = light_place(surface.view, half, solid_angle);
     let reflectance = material.f0 * found.terms.x + (Vec3::ONE - material.f0) * found.terms.y;
     // From what reaches the eye to what facets reflect: masking and the view's cosine, at the rectangle's middle.
-    let smooth_surface = SmoothSurface { alpha2: alpha * alpha, normal_target: material.normal_target };
+    let smooth_surface = smooth_surface(material);
     let masked = 1.0 + microfacet_lambda(smooth_surface, surface.view) + microfacet_lambda(smooth_surface, direction);
     let cos_h = surface.view.dot(half).max(LEAST_COSINE);
     let facets = found.terms.x * surface.view.z.max(LEAST_COSINE) * masked / (cos_h * material.facet_area);

@@ -92,6 +92,11 @@ fn glint_no_light() -> GlintFacetLight {
     return GlintFacetLight(vec3f(0.0), 0.0, vec3f(0.0), GlintCellState(0u, 0u));
 }
 
+// The smooth surface that a material's facets converge to.
+fn glint_smooth_surface(material: GlintCountedMaterial) -> GlintSmoothSurface {
+    return GlintSmoothSurface(material.alpha * material.alpha, material.normal_target);
+}
+
 // From the tangent frame to that of the roughness.
 fn glint_turned(turn: vec2f, v: vec3f) -> vec3f {
     return vec3f(turn.x * v.x + turn.y * v.y, turn.x * v.y - turn.y * v.x, v.z);
@@ -131,7 +136,7 @@ fn glint_light_place(view: vec3f, half: vec3f, solid_angle: f32) -> vec2f {
 // A small cone on the surface.
 fn glint_cone_light(surface: GlintCountedSurface, light: GlintConeLight) -> GlintFacetLight {
     let material = surface.material;
-    let smooth_surface = GlintSmoothSurface(material.alpha * material.alpha, material.normal_target);
+    let smooth_surface = glint_smooth_surface(material);
     let direction = glint_turned(material.turn, light.direction);
     let half = glint_half_vector(surface.view, direction);
     let solid_angle = glint_seen_solid_angle(material, light.solid_angle_sr);
@@ -170,7 +175,7 @@ fn glint_rect_facets(surface: GlintCountedSurface, light: GlintRectLight) -> Gli
     let place = glint_light_place(surface.view, half, solid_angle);
     let reflectance = material.f0 * found.terms.x + (vec3f(1.0) - material.f0) * found.terms.y;
     // From what reaches the eye to what facets reflect: masking and the view's cosine, at the rectangle's middle.
-    let smooth_surface = GlintSmoothSurface(alpha * alpha, material.normal_target);
+    let smooth_surface = glint_smooth_surface(material);
     let masked = 1.0 + glint_microfacet_lambda(smooth_surface, surface.view)
         + glint_microfacet_lambda(smooth_surface, direction);
     let cos_h = max(dot(surface.view, half), GLINT_LEAST_COSINE);

@@ -26,6 +26,11 @@ pub struct Layers {
     pub coat_alpha: f32,
 }
 
+/// The smooth surface that a coat is.
+pub(super) fn coat_surface(layers: Layers) -> SmoothSurface {
+    SmoothSurface { alpha2: Vec2::splat(layers.coat_alpha * layers.coat_alpha), normal_target: GGX }
+}
+
 /// Share that a coat leaves of what lies under it, for a view of this cosine.
 pub fn coat_through(layers: Layers, cos_view: f32) -> f32 {
     if layers.coat > 0.0 { 1.0 - layers.coat * fresnel(COAT_F0, cos_view).x } else { 1.0 }
@@ -49,8 +54,7 @@ pub fn cone_layers(layers: Layers, f0: Vec3, view: Vec3, direction: Vec3, solid_
     if layers.coat > 0.0 {
         let half = half_vector(view, direction);
         let cos_h = view.dot(half);
-        let round = SmoothSurface { alpha2: Vec2::splat(layers.coat_alpha * layers.coat_alpha), normal_target: GGX };
-        let seen = microfacet_under_cone(round, view, solid_angle, cos_h);
+        let seen = microfacet_under_cone(coat_surface(layers), view, solid_angle, cos_h);
         let reflected = microfacet_ndf(seen, half) * microfacet_masked(seen, view, direction);
         sum += fresnel(COAT_F0, cos_h) * (layers.coat * reflected);
     }

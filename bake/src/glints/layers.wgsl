@@ -20,6 +20,11 @@ struct GlintLayers {
     coat_alpha: f32,
 }
 
+// The smooth surface that a coat is.
+fn glint_coat_surface(layers: GlintLayers) -> GlintSmoothSurface {
+    return GlintSmoothSurface(vec2f(layers.coat_alpha * layers.coat_alpha), GLINT_MICROFACET_GGX);
+}
+
 // Share that a coat leaves of what lies under it, for a view of this cosine.
 fn glint_coat_through(layers: GlintLayers, cos_view: f32) -> f32 {
     if !(layers.coat > 0.0) {
@@ -46,8 +51,7 @@ fn glint_cone_layers(layers: GlintLayers, f0: vec3f, view: vec3f, direction: vec
     if layers.coat > 0.0 {
         let half = glint_half_vector(view, direction);
         let cos_h = dot(view, half);
-        let round = GlintSmoothSurface(vec2f(layers.coat_alpha * layers.coat_alpha), GLINT_MICROFACET_GGX);
-        let seen = glint_microfacet_under_cone(round, view, solid_angle, cos_h);
+        let seen = glint_microfacet_under_cone(glint_coat_surface(layers), view, solid_angle, cos_h);
         let reflected = glint_microfacet_ndf(seen, half) * glint_microfacet_masked(seen, view, direction);
         sum += glint_fresnel(GLINT_COAT_F0, cos_h) * (layers.coat * reflected);
     }

@@ -6,8 +6,8 @@
 //! a light without extent of irradiance 1 over [`counted_pdf`], which is that of the smooth surface on average.
 //! Directions are unit vectors in the tangent frame.
 
-use super::eval::{CountedMaterial, turned};
-use super::layers::{COAT_F0, coat_through};
+use super::eval::{CountedMaterial, smooth_surface, turned};
+use super::layers::{COAT_F0, coat_surface, coat_through};
 use crate::brdf::{fresnel, half_vector};
 use crate::microfacet::{GGX, SmoothSurface, microfacet_lambda, microfacet_ndf};
 use glam::{Vec2, Vec3};
@@ -64,10 +64,8 @@ pub fn counted_sample(material: CountedMaterial, view: Vec3, random: Vec3) -> Ve
         return Vec3::new(across * cosine, across * sine, (1.0 - numbers.y).sqrt());
     }
     let seen = turned(material.turn, view);
-    let of_facets = SmoothSurface { alpha2: material.alpha * material.alpha, normal_target: material.normal_target };
-    let coat_alpha = material.layers.coat_alpha;
-    let of_coat = SmoothSurface { alpha2: Vec2::splat(coat_alpha * coat_alpha), normal_target: GGX };
-    let normal = mirror_normal(if random.x < chances.x { of_facets } else { of_coat }, seen, numbers);
+    let taken = if random.x < chances.x { smooth_surface(material) } else { coat_surface(material.layers) };
+    let normal = mirror_normal(taken, seen, numbers);
     let light = normal * (2.0 * seen.dot(normal)) - seen;
     turned(material.turn * Vec2::new(1.0, -1.0), light)
 }
@@ -79,10 +77,7 @@ pub fn counted_pdf(material: CountedMaterial, view: Vec3, light: Vec3) -> f32 {
     }
     let chances = lobe_chances(material, view.z);
     let (seen, towards) = (turned(material.turn, view), turned(material.turn, light));
-    let of_facets = SmoothSurface { alpha2: material.alpha * material.alpha, normal_target: material.normal_target };
-    let coat_alpha = material.layers.coat_alpha;
-    let of_coat = SmoothSurface { alpha2: Vec2::splat(coat_alpha * coat_alpha), normal_target: GGX };
-    chances.x * mirror_pdf(of_facets, seen, towards)
+    chances.x * mirror_pdf(smooth_surface(material), seen, towards)
         + chances.y * (light.z * FRAC_1_PI)
-        + chances.z * mirror_pdf(of_coat, seen, towards)
+        + chances.z * mirror_pdf(coat_surface(material.layers), seen, towards)
 }

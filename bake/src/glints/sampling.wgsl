@@ -55,11 +55,9 @@ fn glint_counted_sample(material: GlintCountedMaterial, view: vec3f, random: vec
         return vec3f(across * cos(angle), across * sin(angle), sqrt(1.0 - numbers.y));
     }
     let seen = glint_turned(material.turn, view);
-    let of_facets = GlintSmoothSurface(material.alpha * material.alpha, material.normal_target);
-    let coat_alpha = material.layers.coat_alpha;
-    var taken = GlintSmoothSurface(vec2f(coat_alpha * coat_alpha), GLINT_MICROFACET_GGX);
+    var taken = glint_coat_surface(material.layers);
     if random.x < chances.x {
-        taken = of_facets;
+        taken = glint_smooth_surface(material);
     }
     let normal = glint_mirror_normal(taken, seen, numbers);
     let light = normal * (2.0 * dot(seen, normal)) - seen;
@@ -74,10 +72,7 @@ fn glint_counted_pdf(material: GlintCountedMaterial, view: vec3f, light: vec3f) 
     let chances = glint_lobe_chances(material, view.z);
     let seen = glint_turned(material.turn, view);
     let towards = glint_turned(material.turn, light);
-    let of_facets = GlintSmoothSurface(material.alpha * material.alpha, material.normal_target);
-    let coat_alpha = material.layers.coat_alpha;
-    let of_coat = GlintSmoothSurface(vec2f(coat_alpha * coat_alpha), GLINT_MICROFACET_GGX);
-    return chances.x * glint_mirror_pdf(of_facets, seen, towards)
+    return chances.x * glint_mirror_pdf(glint_smooth_surface(material), seen, towards)
         + chances.y * (light.z * 0.31830989)
-        + chances.z * glint_mirror_pdf(of_coat, seen, towards);
+        + chances.z * glint_mirror_pdf(glint_coat_surface(material.layers), seen, towards);
 }
