@@ -3,6 +3,17 @@
 
 use glam::{DMat2, DVec2, Vec2};
 
+/// Where a pixel lies on a surface: uv, or whatever units the host measures a material's surface in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelOnSurface {
+    /// Surface position at the pixel's centre.
+    pub position: Vec2,
+    /// Its derivative along the screen's x axis, a pixel.
+    pub d_dx: Vec2,
+    /// Its derivative along the screen's y axis, a pixel.
+    pub d_dy: Vec2,
+}
+
 /// A footprint in f32, as a shader has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShaderFootprint {

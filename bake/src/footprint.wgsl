@@ -1,5 +1,14 @@
 // The pixel's footprint as a 2D Gaussian over a surface, in texels. Twin of footprint.rs. Texel centres lie at i + 1/2.
 
+// Where a pixel lies on a surface: uv, or whatever units the host measures a material's surface in.
+struct GlintPixelOnSurface {
+    position: vec2f,
+    // Derivatives along the screen's axes, a pixel.
+    d_dx: vec2f,
+    d_dy: vec2f,
+}
+
+// What a pixel sees of a surface.
 struct GlintFootprint {
     // Centre, texels.
     mean: vec2f,

@@ -6,7 +6,7 @@
 
 use crate::brdf::{fresnel, half_vector};
 use glam::{Vec2, Vec3};
-use std::f32::consts::PI;
+use std::f32::consts::{PI, TAU};
 
 /// [`SmoothSurface::normal_target`] of Beckmann slopes.
 pub const BECKMANN: u32 = 0;
@@ -119,4 +119,32 @@ pub fn microfacet_area(surface: SmoothSurface) -> f32 {
         sum += round_facet_area(surface.normal_target, mean - difference * node);
     }
     sum * 0.125
+}
+
+/// Density over solid angle, 1/sr, of the directions that the normals of [`mirror_normal`] mirror `view` to.
+pub fn mirror_pdf(surface: SmoothSurface, view: Vec3, light: Vec3) -> f32 {
+    let half = half_vector(view, light);
+    let density = microfacet_ndf(surface, half);
+    if surface.normal_target == GGX {
+        // Visible normals: D(h) G₁(o) (h·o) / o.z, over 4 h·o.
+        return density / ((1.0 + microfacet_lambda(surface, view)) * 4.0 * view.z.max(1e-6));
+    }
+    density * half.z / (4.0 * view.dot(half).max(1e-6))
+}
+
+/// Normal of a facet of `surface` that `view` is mirrored at, for two uniform numbers in [0, 1): of GGX a visible one, by a cap of a sphere (Dupuy and
+/// Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", Listing 3), of Beckmann one by its slopes, which are Gaussian.
+pub fn mirror_normal(surface: SmoothSurface, view: Vec3, random: Vec2) -> Vec3 {
+    let alpha = Vec2::new(surface.alpha2.x.sqrt(), surface.alpha2.y.sqrt());
+    let (sine, cosine) = (TAU * random.x).sin_cos();
+    if surface.normal_target == GGX {
+        let flat = Vec2::new(view.x, view.y) * alpha;
+        let stretched = flat.extend(view.z).normalize();
+        let z = (1.0 - random.y) * (1.0 + stretched.z) - stretched.z;
+        let across = (1.0 - z * z).clamp(0.0, 1.0).sqrt();
+        let cap = stretched + Vec3::new(across * cosine, across * sine, z);
+        return (Vec2::new(cap.x, cap.y) * alpha).extend(cap.z).normalize();
+    }
+    let slope = alpha * Vec2::new(cosine, sine) * (-(1.0 - random.y).max(1e-30).ln()).sqrt();
+    slope.extend(1.0).normalize()
 }

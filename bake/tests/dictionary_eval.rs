@@ -3,14 +3,15 @@
 use glam::{DVec2, Vec2, Vec3};
 use glint_bake_core::dictionary::baked::Tables;
 use glint_bake_core::dictionary::eval::{
-    DictionaryMaterial, PixelFootprint, PixelOnSurface, SlopeQuery, SlopeSum, TARGET_BECKMANN, TARGET_GGX,
-    cell_rotation, cell_sdf, facet_level, level_sdf, log1p_over_x, patch_sdf, slope_query, smooth_sdf,
+    DictionaryMaterial, PixelFootprint, SlopeQuery, SlopeSum, TARGET_BECKMANN, TARGET_GGX, cell_rotation, cell_sdf,
+    facet_level, level_sdf, log1p_over_x, patch_sdf, slope_query, smooth_sdf,
 };
 use glint_bake_core::dictionary::eval::{
     PIXEL_RADIUS2, RECONSTRUCTION_RADIUS2, cell_weight, level_window, pixel_footprint, row_span,
 };
 use glint_bake_core::dictionary::quality::max_cells;
 use glint_bake_core::dictionary::{DictionaryOptions, bake, reference};
+use glint_bake_core::footprint::PixelOnSurface;
 use glint_bake_core::hash::{CellState, cell_state, draw_bits, uniform_from_bits};
 use glint_bake_core::progress::Silent;
 use rand::{Rng, SeedableRng};

@@ -2,11 +2,10 @@
 
 use glam::{Vec2, Vec3};
 use glint_bake_core::dictionary::eval::patch_brdf;
-use glint_bake_core::dictionary::eval::{
-    DictionaryMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, patch_sdf, smooth_sdf,
-};
+use glint_bake_core::dictionary::eval::{DictionaryMaterial, TARGET_BECKMANN, TARGET_GGX, patch_sdf, smooth_sdf};
 use glint_bake_core::dictionary::quality::max_cells;
 use glint_bake_core::dictionary::{DictionaryOptions, bake};
+use glint_bake_core::footprint::PixelOnSurface;
 use glint_bake_core::progress::Silent;
 
 fn material() -> DictionaryMaterial {

@@ -21,11 +21,10 @@ Examples:
 const SCHEMA: &str =
     "https://raw.githubusercontent.com/glint-bake/glint-bake/main/docs/schema/glint-shaders.schema.json";
 
-/// Write the run time of the methods in a shading language
+/// Write the run time of the methods for engines, in a shading language
 ///
-/// WGSL is the library as it is, METHOD/FILE.wgsl without bindings, with bind_*.wgsl and query_*.wgsl as examples of how it is
-/// bound and called. In other languages a file is one compute program that answers queries of one method: it holds all functions of
-/// the library that the method needs.
+/// A method is one file to include, glint_METHOD, which has no entry point: functions that take a pixel, two directions and a material
+/// and give a BRDF, with bindings that a host may replace. example_METHOD is a compute program that calls it.
 #[derive(clap::Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
@@ -54,11 +53,11 @@ pub enum Language {
     Wgsl,
     /// Direct3D's, shader model 5.1 (.hlsl)
     Hlsl,
-    /// OpenGL's, version 4.50 (.comp)
+    /// OpenGL's, version 4.50 (.glsl)
     Glsl,
     /// Metal's, version 2.0 (.metal)
     Msl,
-    /// Vulkan's binary, version 1.0 (.spv)
+    /// Vulkan's binary, version 1.0, of the examples (.spv)
     Spirv,
 }
 

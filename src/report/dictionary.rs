@@ -9,11 +9,12 @@ use glam::{DVec2, Vec2, Vec3};
 use glint_bake_core::brdf::{masking, normal_to_slope, sdf_to_ndf};
 use glint_bake_core::dictionary::baked::{Dictionary, Tables};
 use glint_bake_core::dictionary::eval::{
-    DictionaryMaterial, PixelOnSurface, TARGET_BECKMANN, TARGET_GGX, cell_sdf, patch_sdf, slope_query,
+    DictionaryMaterial, TARGET_BECKMANN, TARGET_GGX, cell_sdf, patch_sdf, slope_query,
 };
 use glint_bake_core::dictionary::quality::{LevelQuality, domain_floor, measure_level};
 use glint_bake_core::dictionary::reference::smooth_density;
 use glint_bake_core::dictionary::{DictionaryOptions, bake};
+use glint_bake_core::footprint::PixelOnSurface;
 use glint_bake_core::hash::cell_state;
 use glint_bake_core::progress::Silent;
 use rand::{Rng, SeedableRng};

@@ -3,8 +3,9 @@
 use crate::foreign::python_with;
 use crate::support::{bake, root};
 use glam::{Vec2, Vec3};
-use glint_bake_core::dictionary::eval::{DictionaryMaterial, PixelOnSurface, patch_sdf};
+use glint_bake_core::dictionary::eval::{DictionaryMaterial, patch_sdf};
 use glint_bake_core::dictionary::sections;
+use glint_bake_core::footprint::PixelOnSurface;
 use glint_formats::{Limits, Pack};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;

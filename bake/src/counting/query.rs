@@ -22,7 +22,7 @@ use crate::hash::{CellState, mix_bits};
 use glam::{IVec2, IVec3, Vec2, Vec3};
 
 /// Largest |level|; the shorter edge of a cell is 2^level surface units.
-const MAX_CELL_LEVEL: f32 = 24.0;
+const COARSEST_FACET_LEVEL: f32 = 24.0;
 /// Longest cells: 2 to this times as long as wide.
 const MAX_RATIO_LEVEL: f32 = 6.0;
 /// Longest derivative that counts, so that squares of squares are finite.
@@ -93,7 +93,7 @@ pub fn footprint_box(d_dx: Vec2, d_dy: Vec2) -> FootprintBox {
     let axes = pixel_axes(d_dx, d_dy);
     let major2 = axes.major2.max(1e-14);
     let minor2 = axes.minor2.max(major2 * (1.0 / 4096.0));
-    let lod = (0.5 * quick_log2(minor2)).clamp(-MAX_CELL_LEVEL, MAX_CELL_LEVEL - 1.0);
+    let lod = (0.5 * quick_log2(minor2)).clamp(-COARSEST_FACET_LEVEL, COARSEST_FACET_LEVEL - 1.0);
     let ratio = (0.5 * quick_log2(major2) - lod).clamp(0.0, MAX_RATIO_LEVEL);
     let twice = axes.difference;
     let around = twice.x.abs() + twice.y.abs();
@@ -237,7 +237,7 @@ pub fn facing_plane(position: Vec3, d_dx: Vec3, d_dy: Vec3, normal: Vec3, seed: 
     let front = dx.cross(dy);
     let area = front.length().max(1e-14);
     let lod = 0.5 * quick_log2(area);
-    let patch = patch_level(lod.clamp(-MAX_CELL_LEVEL, MAX_CELL_LEVEL - 1.0).floor() as i32);
+    let patch = patch_level(lod.clamp(-COARSEST_FACET_LEVEL, COARSEST_FACET_LEVEL - 1.0).floor() as i32);
     let place = (position * level_scale(patch)).clamp(Vec3::splat(-FARTHEST), Vec3::splat(FARTHEST));
     let at: IVec3 = place.floor().as_ivec3();
     let key = mix_bits(seed.wrapping_add((patch as u32).wrapping_mul(LEVEL_STEP)));

@@ -10,7 +10,7 @@
 #import counting::eval
 
 // Largest |level|; the shorter edge of a cell is 2^level surface units.
-const GLINT_MAX_CELL_LEVEL: f32 = 24.0;
+const GLINT_COARSEST_FACET_LEVEL: f32 = 24.0;
 // Longest cells: 2 to this times as long as wide.
 const GLINT_MAX_RATIO_LEVEL: f32 = 6.0;
 const GLINT_LONGEST: f32 = 1.0e8;
@@ -69,7 +69,7 @@ fn glint_footprint_box(d_dx: vec2f, d_dy: vec2f) -> GlintFootprintBox {
     let axes = glint_pixel_axes(d_dx, d_dy);
     let major2 = max(axes.major2, 1.0e-14);
     let minor2 = max(axes.minor2, major2 * (1.0 / 4096.0));
-    let lod = clamp(0.5 * glint_quick_log2(minor2), -GLINT_MAX_CELL_LEVEL, GLINT_MAX_CELL_LEVEL - 1.0);
+    let lod = clamp(0.5 * glint_quick_log2(minor2), -GLINT_COARSEST_FACET_LEVEL, GLINT_COARSEST_FACET_LEVEL - 1.0);
     let ratio = clamp(0.5 * glint_quick_log2(major2) - lod, 0.0, GLINT_MAX_RATIO_LEVEL);
     let twice = axes.difference;
     let around = abs(twice.x) + abs(twice.y);
@@ -214,7 +214,7 @@ fn glint_facing_plane(position: vec3f, d_dx: vec3f, d_dy: vec3f, normal: vec3f, 
     let front = cross(dx, dy);
     let area = max(length(front), 1.0e-14);
     let lod = 0.5 * glint_quick_log2(area);
-    let patch_number = glint_patch_level(i32(floor(clamp(lod, -GLINT_MAX_CELL_LEVEL, GLINT_MAX_CELL_LEVEL - 1.0))));
+    let patch_number = glint_patch_level(i32(floor(clamp(lod, -GLINT_COARSEST_FACET_LEVEL, GLINT_COARSEST_FACET_LEVEL - 1.0))));
     let place = clamp(position * glint_level_scale(patch_number), vec3f(-GLINT_FARTHEST), vec3f(GLINT_FARTHEST));
     let at = vec3i(floor(place));
     let key = glint_mix_bits(seed + bitcast<u32>(patch_number) * GLINT_LEVEL_STEP);

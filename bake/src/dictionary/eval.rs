@@ -30,7 +30,7 @@
 
 use super::baked::Tables;
 use crate::brdf::{facet_brdf, half_vector, normal_to_slope, sdf_to_ndf};
-use crate::footprint::pixel_axes;
+use crate::footprint::{PixelOnSurface, pixel_axes};
 use crate::hash::{CellState, cell_state_in_row, draw_bits, draw_uniform, row_key};
 use glam::{IVec2, Vec2, Vec3};
 
@@ -74,17 +74,6 @@ pub struct DictionaryMaterial {
     pub colours: Vec<Vec3>,
     /// Mean of the colours, white if there are none.
     pub mean_colour: Vec3,
-}
-
-/// Where a pixel lies on the surface, in surface units (those of the density).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PixelOnSurface {
-    /// Surface position at the pixel's centre.
-    pub position: Vec2,
-    /// Its derivative along the screen's x axis, a pixel.
-    pub d_dx: Vec2,
-    /// Its derivative along the screen's y axis, a pixel.
-    pub d_dy: Vec2,
 }
 
 /// A sum of weighted slope distributions.

@@ -65,14 +65,6 @@ struct GlintDictionaryMaterial {
     mean_colour: vec3f,
 }
 
-// Where a pixel lies on the surface, in surface units (those of the density).
-struct GlintPixelOnSurface {
-    position: vec2f,
-    // Derivatives along the screen's axes, a pixel.
-    d_dx: vec2f,
-    d_dy: vec2f,
-}
-
 // A sum of weighted slope distributions.
 struct GlintSlopeSum {
     // Density over slopes, by colour.

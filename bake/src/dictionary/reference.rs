@@ -8,8 +8,9 @@
 //! - GGX's radial map comes from the two radial distribution functions, its Jacobian from a difference quotient.
 
 use super::bake::Draws;
-use super::eval::{DictionaryMaterial, PixelOnSurface, TARGET_GGX};
+use super::eval::{DictionaryMaterial, TARGET_GGX};
 use super::options::DictionaryOptions;
+use crate::footprint::PixelOnSurface;
 use crate::hash::{cell_state, draw_bits, draw_uniform};
 use glam::DVec2;
 use std::f64::consts::{PI, SQRT_2};

@@ -8,8 +8,8 @@
 
 use super::eval::{CountedMaterial, smooth_surface, turned};
 use super::layers::{COAT_F0, coat_surface, coat_through};
-use crate::brdf::{fresnel, half_vector};
-use crate::microfacet::{GGX, SmoothSurface, microfacet_lambda, microfacet_ndf};
+use crate::brdf::fresnel;
+use crate::microfacet::{mirror_normal, mirror_pdf};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, TAU};
 
@@ -24,33 +24,6 @@ fn lobe_chances(material: CountedMaterial, cos_view: f32) -> Vec3 {
     // A material that reflects nothing is sampled by its facets.
     let all = Vec3::new(facets + 1e-6, scattered, coat);
     all / (all.x + all.y + all.z)
-}
-
-/// Density over solid angle of the light that facets of `surface` mirror `view` to.
-fn mirror_pdf(surface: SmoothSurface, view: Vec3, light: Vec3) -> f32 {
-    let half = half_vector(view, light);
-    let density = microfacet_ndf(surface, half);
-    if surface.normal_target == GGX {
-        // Visible normals: D(h) G₁(o) (h·o) / o.z, over 4 h·o.
-        return density / ((1.0 + microfacet_lambda(surface, view)) * 4.0 * view.z.max(1e-6));
-    }
-    density * half.z / (4.0 * view.dot(half).max(1e-6))
-}
-
-/// Normal of a facet of `surface` that `view` is mirrored at, for two uniform numbers.
-fn mirror_normal(surface: SmoothSurface, view: Vec3, random: Vec2) -> Vec3 {
-    let alpha = Vec2::new(surface.alpha2.x.sqrt(), surface.alpha2.y.sqrt());
-    let (sine, cosine) = (TAU * random.x).sin_cos();
-    if surface.normal_target == GGX {
-        let flat = Vec2::new(view.x, view.y) * alpha;
-        let stretched = flat.extend(view.z).normalize();
-        let z = (1.0 - random.y) * (1.0 + stretched.z) - stretched.z;
-        let across = (1.0 - z * z).clamp(0.0, 1.0).sqrt();
-        let cap = stretched + Vec3::new(across * cosine, across * sine, z);
-        return (Vec2::new(cap.x, cap.y) * alpha).extend(cap.z).normalize();
-    }
-    let slope = alpha * Vec2::new(cosine, sine) * (-(1.0 - random.y).max(1e-30).ln()).sqrt();
-    slope.extend(1.0).normalize()
 }
 
 /// A direction of light for `view` and three uniform numbers in [0, 1): its density is [`counted_pdf`]. Below the surface it counts as

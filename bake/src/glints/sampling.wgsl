@@ -18,32 +18,6 @@ fn glint_lobe_chances(material: GlintCountedMaterial, cos_view: f32) -> vec3f {
     return all_lobes / (all_lobes.x + all_lobes.y + all_lobes.z);
 }
 
-// Density over solid angle of the light that facets of `surface` mirror `view` to.
-fn glint_mirror_pdf(surface: GlintSmoothSurface, view: vec3f, light: vec3f) -> f32 {
-    let half = glint_half_vector(view, light);
-    let density = glint_microfacet_ndf(surface, half);
-    if surface.normal_target == GLINT_MICROFACET_GGX {
-        return density / ((1.0 + glint_microfacet_lambda(surface, view)) * 4.0 * max(view.z, 1.0e-6));
-    }
-    return density * half.z / (4.0 * max(dot(view, half), 1.0e-6));
-}
-
-// Normal of a facet of `surface` that `view` is mirrored at, for two uniform numbers.
-fn glint_mirror_normal(surface: GlintSmoothSurface, view: vec3f, random: vec2f) -> vec3f {
-    let alpha = sqrt(surface.alpha2);
-    let sine = sin(6.2831853 * random.x);
-    let cosine = cos(6.2831853 * random.x);
-    if surface.normal_target == GLINT_MICROFACET_GGX {
-        let stretched = normalize(vec3f(view.xy * alpha, view.z));
-        let z = (1.0 - random.y) * (1.0 + stretched.z) - stretched.z;
-        let across = sqrt(clamp(1.0 - z * z, 0.0, 1.0));
-        let cap = stretched + vec3f(across * cosine, across * sine, z);
-        return normalize(vec3f(cap.xy * alpha, cap.z));
-    }
-    let slope = alpha * vec2f(cosine, sine) * sqrt(-log(max(1.0 - random.y, 1.0e-30)));
-    return normalize(vec3f(slope, 1.0));
-}
-
 // A direction of light for `view` and three uniform numbers in [0, 1): its density is glint_counted_pdf. Below the surface it counts as
 // one that brings nothing.
 fn glint_counted_sample(material: GlintCountedMaterial, view: vec3f, random: vec3f) -> vec3f {

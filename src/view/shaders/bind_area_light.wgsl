@@ -16,3 +16,7 @@
 @group(1) @binding(5) var area_light_sampler: sampler;
 // Linear, clamps.
 @group(1) @binding(6) var area_light_table_sampler: sampler;
+
+fn glint_area_light_maps() -> GlintAreaLightMaps {
+    return area_light_maps;
+}

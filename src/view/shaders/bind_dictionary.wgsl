@@ -24,3 +24,7 @@ fn glint_dictionary_colour(index: u32) -> vec3f {
     bound_loads += 1u;
     return dictionary_colours[index].rgb;
 }
+
+fn glint_dictionary_tables() -> GlintDictionaryTables {
+    return dictionary_tables;
+}

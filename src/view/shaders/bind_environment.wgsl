@@ -43,3 +43,7 @@ fn glint_environment_albedo_at(layer: u32, place: vec2f) -> vec4f {
     bound_loads += 1u;
     return textureSampleLevel(environment_albedo, environment_sampler, place, layer, 0.0);
 }
+
+fn glint_environment_data() -> GlintEnvironment {
+    return environment;
+}

@@ -28,3 +28,7 @@ fn glint_ltc_terms(place: vec2f) -> vec4f {
     bound_loads += 1u;
     return textureSampleLevel(counted_terms, counted_sampler, (place + 0.5) / GLINT_LTC_SIZE, 0.0);
 }
+
+fn glint_glints_material() -> GlintCountedMaterial {
+    return counted_material;
+}

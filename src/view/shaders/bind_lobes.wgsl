@@ -46,3 +46,11 @@ fn glint_synthesis_seam_word(index: u32) -> u32 {
     bound_loads += 1u;
     return synthesis_seams[index];
 }
+
+fn glint_lobes_map() -> GlintLobesMap {
+    return lobes.map;
+}
+
+fn glint_synthesis() -> GlintSynthesis {
+    return lobes.synthesis;
+}

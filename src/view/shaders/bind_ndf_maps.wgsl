@@ -4,7 +4,7 @@
 // The including program defines NDF_MAPS_LAYERED: bool, whether a coat may be bound; false, where that is known when the pipeline is
 // made, takes all that belongs to one out of the program.
 
-#import ndf_maps::query
+#import include_ndf_maps
 #import bind_loads
 #import bind_table
 
@@ -13,14 +13,6 @@ struct NdfMapsData {
     material: GlintNdfMaterial,
     // Levels, palette and reach mask.
     records: array<vec4u, 256>,
-}
-
-// Section LAUB.
-struct NdfMapsLayers {
-    // Reflectance of the coat at normal incidence.
-    coat_f0: f32,
-    // How many layers there are: 2, or 0 where there is no such section.
-    count: u32,
 }
 
 @group(1) @binding(0) var<uniform> ndf_maps: NdfMapsData;
@@ -41,11 +33,12 @@ struct NdfMapsLayers {
 @group(1) @binding(9) var ndf_maps_coat_normals: texture_2d<u32>;
 @group(1) @binding(10) var ndf_maps_coat_noise: texture_2d<u32>;
 @group(1) @binding(11) var ndf_maps_coat_classes: texture_2d<u32>;
-@group(1) @binding(12) var<storage, read> ndf_maps_layers: NdfMapsLayers;
+// Section LAUB.
+@group(1) @binding(12) var<storage, read> ndf_maps_layers: GlintNdfLayers;
 @group(1) @binding(13) var ndf_maps_sampler: sampler;
 
 // The base, 0, or the coat, 1.
-fn bind_ndf_maps_material(layer: u32) -> GlintNdfMaterial {
+fn glint_ndf_material(layer: u32) -> GlintNdfMaterial {
     if NDF_MAPS_LAYERED {
         if layer != 0u {
             let a = ndf_maps_coat[0];
@@ -119,4 +112,8 @@ fn glint_ndf_class_texel(layer: u32, at: vec2u, mip: u32) -> vec4u {
         }
     }
     return textureLoad(ndf_maps_classes, at, mip);
+}
+
+fn glint_ndf_layers() -> GlintNdfLayers {
+    return ndf_maps_layers;
 }

@@ -1,9 +1,11 @@
 //! The run time of the glint methods in WGSL: a library of functions without bindings, and what makes programs of it.
 //!
 //! The library is `glint_bake_core::shaders`: each file lies beside its twin in Rust, with functions of the same names, data by
-//! parameters or by accessor functions that the including program defines. Beside this file lie three kinds more:
+//! parameters or by accessor functions that the including program defines. Beside this file lie:
 //! - `bind_<method>.wgsl`: bindings in group 1 with those accessors, as the viewer and the tests have them. Replace it by your
 //!   engine's.
+//! - `include_<method>.wgsl`: what an engine calls, a BRDF of a pixel and the like, and `example_<method>.wgsl`, a compute program that calls
+//!   it: `glint-bake shaders` writes both in the languages of engines ([`translate`]).
 //! - `query_<method>.wgsl`: a compute program that answers queries, one an invocation: what the parity tests run.
 //!   query_environment.wgsl takes either of the two bindings of an environment, so it names none.
 //! - `view_*.wgsl` and `shade_<method>.wgsl`: the viewer's own programs, see view_scene.wgsl.
@@ -11,6 +13,9 @@
 //! A file names those that it calls in lines `#import <method>::<file>`.
 //! Order of declarations does not matter in WGSL, so a program is its files one after the other ([`compose`]).
 
+mod declared;
+mod include;
+mod items;
 pub mod layout;
 pub mod operations;
 pub mod translate;
@@ -27,6 +32,23 @@ macro_rules! own {
 /// Files of the viewer and of the tests: bindings, queries, shading. The run time itself is
 /// [`glint_bake_core::shaders::all`].
 const OWN: &[Shader] = &[
+    own!("include_map"),
+    own!("include_dictionary"),
+    own!("include_ndf_maps"),
+    own!("include_lobes"),
+    own!("include_surface"),
+    own!("include_glints"),
+    own!("include_area_light"),
+    own!("include_environment"),
+    own!("bind_ndf_maps_layered"),
+    own!("example_pixels"),
+    own!("example_dictionary"),
+    own!("example_ndf_maps"),
+    own!("example_lobes"),
+    own!("example_surface"),
+    own!("example_glints"),
+    own!("example_area_light"),
+    own!("example_environment"),
     own!("bind_loads"),
     own!("bind_table"),
     own!("bind_dictionary"),

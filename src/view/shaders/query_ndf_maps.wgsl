@@ -1,10 +1,7 @@
 // Answers queries of the density of normals under footprints on NDF maps, one an invocation.
 
 #import bind_ndf_maps
-#import ndf_maps::moments
-
-// Both layers are asked, by their numbers.
-const NDF_MAPS_LAYERED: bool = true;
+#import bind_ndf_maps_layered
 
 struct NdfMapsQuery {
     mean: vec2f,
@@ -52,7 +49,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let q = queries[id.x];
-    let material = bind_ndf_maps_material(q.layer);
+    let material = glint_ndf_material(q.layer);
     let settings = GlintNdfSettings(q.max_ratio, q.reach);
     let sum = glint_ndf_density(material, GlintFootprint(q.mean, q.xx, q.xy, q.yy), settings, q.s);
     let moments = glint_ndf_moments(material, GlintFootprint(q.mean, q.xx, q.xy, q.yy), settings);

@@ -23,12 +23,11 @@ fn shade_ndf_settings() -> GlintNdfSettings {
     if NDF_MAPS_ACCURATE && (material.switches & SHADE_NDF_ACCURATE) != 0u {
         return GlintNdfSettings(16.0, 4.0);
     }
-    // EvalSettings::REAL_TIME of the bake.
-    return GlintNdfSettings(4.0, 2.5);
+    return glint_ndf_maps_settings();
 }
 
 fn shade_ndf_material(layer: u32) -> GlintNdfMaterial {
-    var found = bind_ndf_maps_material(layer);
+    var found = glint_ndf_material(layer);
     if NDF_MAPS_CELLS != 0xffffffffu {
         found.cells = NDF_MAPS_CELLS;
     }

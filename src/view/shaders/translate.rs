@@ -1,13 +1,15 @@
-//! The library in the languages of engines: WGSL as it is, and the query programs through naga's back ends.
+//! The library in the languages of engines, for `glint-bake shaders`: WGSL as it is, other languages through naga's back ends.
 //!
-//! A translated file is one compute program, `query_<method>`: it holds every function of the library that the method
-//! calls, with the bindings of `bind_<method>.wgsl`. Group and binding are kept as SPIR-V's descriptor set and binding and
-//! as HLSL's space and register. GLSL counts uniform buffers, storage buffers and textures each from 0, Metal buffers,
-//! textures and samplers, in the order of groups and bindings; Metal has the lengths of arrays in the buffer after the
-//! last. Loops of the library are bounded, so no counters are added to them.
+//! A method is one file to include, `glint_<method>`, with the ready bindings of `bind_<method>.wgsl`; `example_<method>` calls it. Where
+//! packs store data in several ways there is a file for each, see [`CHOICES`]. Group and binding are kept as SPIR-V's descriptor set and
+//! binding and as HLSL's space and register. GLSL counts uniform buffers, storage buffers and textures each from 0, Metal buffers,
+//! textures and samplers, in the order of groups and bindings; the functions of Metal get resources as arguments. Loops of the library
+//! are bounded, so no counters are added to them.
 
-use crate::{module, modules, parts};
-use glint_bake_core::shaders::{self, Shader};
+use crate::include::{Parts, arrange, replace_words};
+use crate::items::items;
+use crate::{CHOICES, module, modules, parts, text};
+use glint_bake_core::shaders::Shader;
 use naga::back::{glsl, hlsl, msl, spv};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{AddressSpace, ResourceBinding, ShaderStage, TypeInner};
@@ -32,14 +34,22 @@ impl Language {
     /// Every language.
     pub const ALL: [Language; 5] = [Language::Wgsl, Language::Hlsl, Language::Glsl, Language::Msl, Language::Spirv];
 
-    /// Extension of its files: those that compilers expect.
+    /// Extension of the files to include.
     pub fn extension(self) -> &'static str {
         match self {
             Language::Wgsl => "wgsl",
             Language::Hlsl => "hlsl",
-            Language::Glsl => "comp",
+            Language::Glsl => "glsl",
             Language::Msl => "metal",
             Language::Spirv => "spv",
+        }
+    }
+
+    /// Extension of examples: those that compilers expect of compute programs.
+    fn example_extension(self) -> &'static str {
+        match self {
+            Language::Glsl => "comp",
+            other => other.extension(),
         }
     }
 }
@@ -55,10 +65,10 @@ pub struct ShaderFile {
 
 /// Why a program has no translation.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{program}.wgsl cannot be written as {language:?}: {reason}")]
+#[error("{program} cannot be written as {language:?}: {reason}")]
 pub struct TranslateError {
     /// Name of the program.
-    pub program: &'static str,
+    pub program: String,
     /// The language.
     pub language: Language,
     /// What naga says.
@@ -68,15 +78,58 @@ pub struct TranslateError {
 /// What the library uses beyond the least that naga knows; every WebGPU adapter has both.
 pub const CAPABILITIES: Capabilities = Capabilities::CUBE_ARRAY_TEXTURES.union(Capabilities::SHADER_FLOAT16_IN_FLOAT32);
 
-const QUERY: &str = "query_";
-
-/// Names of the methods: one for every `query_<method>.wgsl`.
-pub fn methods() -> Vec<&'static str> {
-    modules().filter_map(|module| module.name.strip_prefix(QUERY)).collect()
+/// One way in which packs store a method's data: what its files are called, and the files of [`CHOICES`] that it takes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Variant {
+    /// The method's name, and what of the storage is not the first choice: `surface_half_tiles`.
+    pub name: String,
+    /// Files of the library.
+    pub choices: Vec<&'static str>,
 }
 
-/// The files of these methods in a language, in a fixed order. WGSL is the library with examples of how it is bound and
-/// called, every file as it is; other languages have one file a method.
+impl Variant {
+    /// Names of the files of the library that the method calls.
+    fn called(&self, method: &str) -> Vec<&'static str> {
+        let include = format!("include_{method}");
+        let all = parts(&[&[include.as_str()], &self.choices[..]].concat());
+        all.into_iter().map(|file| file.name).collect()
+    }
+
+    /// Files of its example, what is needed before what needs it.
+    fn files(&self, method: &str) -> Vec<&'static Shader> {
+        let example = format!("example_{method}");
+        let example = module(&example).unwrap_or_else(|| panic!("there is no {example}.wgsl"));
+        let all = parts(&[&[example.name], &self.choices[..]].concat());
+        all.into_iter().filter(|file| file.name != "bind_loads").collect()
+    }
+}
+
+/// Names of the methods: one for every `include_<method>.wgsl` with an example.
+pub fn methods() -> Vec<&'static str> {
+    let included = modules().filter_map(|module| module.name.strip_prefix("include_"));
+    included.filter(|method| module(&format!("example_{method}")).is_some()).collect()
+}
+
+/// The variants of a method, the usual storage first.
+pub fn variants(method: &str) -> Vec<Variant> {
+    let groups = CHOICES.iter().filter(|choices| choices.0 == method).flat_map(|choices| choices.1);
+    let mut found = vec![Variant { name: method.to_owned(), choices: Vec::new() }];
+    for group in groups {
+        let with = |variant: &Variant, (place, file): (usize, &&'static str)| {
+            let mut variant = variant.clone();
+            variant.choices.push(file);
+            if place > 0 {
+                variant.name = format!("{}_{}", variant.name, file.rsplit("::").next().unwrap_or(file));
+            }
+            variant
+        };
+        found =
+            group.iter().enumerate().flat_map(|file| found.iter().map(move |variant| with(variant, file))).collect();
+    }
+    found
+}
+
+/// The files of these methods in a language, in a fixed order.
 ///
 /// # Errors
 /// [`TranslateError`] names the program and what naga finds wrong with it.
@@ -84,32 +137,89 @@ pub fn methods() -> Vec<&'static str> {
 /// # Panics
 /// If a method is none of [`methods`].
 pub fn files(language: Language, methods: &[&str]) -> Result<Vec<ShaderFile>, TranslateError> {
-    let programs = methods.iter().map(|method| {
-        let name = format!("{QUERY}{method}");
-        module(&name).unwrap_or_else(|| panic!("there is no {name}.wgsl"))
-    });
-    if language == Language::Wgsl {
-        return Ok(library(methods));
+    let mut found = if language == Language::Wgsl { library(methods) } else { Vec::new() };
+    for method in methods {
+        for variant in variants(method) {
+            found.extend(written(language, method, &variant)?);
+        }
     }
-    programs
-        .map(|program| {
-            let bytes = translate(language, program)?;
-            Ok(ShaderFile { name: format!("{}.{}", program.name, language.extension()), bytes })
-        })
-        .collect()
+    Ok(found)
 }
 
-/// The library's files that the methods need, with what the viewer's shading of them needs, in the order of [`modules`].
+/// The library's files that the methods need, with their bindings and examples, in the order of [`modules`].
 fn library(methods: &[&str]) -> Vec<ShaderFile> {
-    let roots = methods.iter().flat_map(|method| [format!("{QUERY}{method}"), format!("shade_{method}")]);
-    let there: Vec<&str> = roots.filter_map(|name| module(&name)).map(|module| module.name).collect();
-    let needed = parts(&there);
-    let exported = |shader: &Shader| {
-        shaders::all().any(|other| other == shader)
-            || ["bind_", QUERY].iter().any(|prefix| shader.name.starts_with(prefix))
-    };
-    let exported = modules().filter(|shader| needed.contains(shader) && exported(shader));
+    let needed: Vec<&Shader> = methods
+        .iter()
+        .flat_map(|method| variants(method).into_iter().flat_map(move |variant| variant.files(method)))
+        .collect();
+    let exported = modules().filter(|shader| needed.contains(shader));
     exported.map(|shader| ShaderFile { name: file_name(shader), bytes: plain_text(shader).into() }).collect()
+}
+
+/// The files of one variant.
+fn written(language: Language, method: &str, variant: &Variant) -> Result<Vec<ShaderFile>, TranslateError> {
+    let files = variant.files(method);
+    let name = format!("glint_{}.{}", variant.name, language.extension());
+    if language == Language::Wgsl {
+        let of_library =
+            files.iter().filter(|file| !["bind_", "example_"].iter().any(|kind| file.name.starts_with(kind)));
+        let library: String = of_library.map(|file| for_engines(file)).collect();
+        return Ok(vec![ShaderFile { name, bytes: format!("{}\n{library}", header(method, "// ")).into() }]);
+    }
+    let example = format!("example_{}.{}", variant.name, language.example_extension());
+    let fail = |reason: String| TranslateError { program: variant.name.clone(), language, reason };
+    let source: String = files.iter().map(|file| for_engines(file)).collect();
+    let module = naga::front::wgsl::parse_str(&source).map_err(|e| fail(e.emit_to_string(&source)))?;
+    let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
+        .validate(&module)
+        .map_err(|e| fail(e.emit_to_string(&source)))?;
+    let translated = match language {
+        Language::Spirv => {
+            return Ok(vec![ShaderFile { name: example, bytes: to_spirv(&module, &info).map_err(fail)? }]);
+        }
+        Language::Hlsl => to_hlsl(&module, &info),
+        Language::Glsl => to_glsl(&module, &info),
+        Language::Msl => to_msl(&module, &info),
+        Language::Wgsl => Ok(source),
+    };
+    let head = header(method, "// ");
+    let (before, first) = match language {
+        Language::Msl => (
+            format!("{head}\n#pragma once\n#include <metal_stdlib>\n#include <simd/simd.h>\n\nusing metal::uint;\n"),
+            String::new(),
+        ),
+        Language::Glsl => {
+            (format!("{head}\n"), "#version 450\n#extension GL_GOOGLE_include_directive : require\n\n".to_owned())
+        }
+        _ => (format!("{head}\n"), String::new()),
+    };
+    let Parts { library, example: calls } =
+        arrange(method, &files, &variant.called(method), &translated.map_err(fail)?, &before);
+    let about = format!("// An example of how {name} is called: a compute program.\n\n#include \"{name}\"\n");
+    Ok(vec![
+        ShaderFile { name: example, bytes: format!("{first}{about}{calls}").into() },
+        ShaderFile { name, bytes: library.into() },
+    ])
+}
+
+/// What every file begins with.
+fn header(method: &str, mark: &str) -> String {
+    let about = crate::declared::head(
+        module(&format!("include_{method}")).unwrap_or_else(|| panic!("there is no include_{method}.wgsl")),
+    );
+    let lines = [
+        "SPDX-License-Identifier: MIT OR Apache-2.0".to_owned(),
+        format!("Of glint-bake {}, written by glint-bake shaders.", env!("CARGO_PKG_VERSION")),
+        String::new(),
+    ];
+    let lines = lines.into_iter().chain(about.into_iter().map(str::to_owned));
+    lines.map(|line| format!("{mark}{line}").trim_end().to_owned() + "\n").collect()
+}
+
+/// The text of a file for engines, which do not count loads.
+fn for_engines(shader: &Shader) -> String {
+    let counts = |line: &&str| line.contains("bound_loads");
+    text(shader).lines().filter(|line| !counts(line)).flat_map(|line| [line, "\n"]).collect()
 }
 
 /// Path of an exported file: `lobes/query.wgsl` for `lobes::query`.
@@ -123,7 +233,8 @@ pub fn plain_text(shader: &Shader) -> String {
         Some(name) => format!("// Calls {}.wgsl.\n", name.trim().replace("::", "/")),
         None => format!("{line}\n"),
     };
-    shader.source.lines().map(line).collect()
+    let lines = shader.source.lines().filter(|line| !line.contains("bound_loads") && *line != "#import bind_loads");
+    lines.map(line).collect()
 }
 
 /// Instructions of a program as SPIR-V, declarations left out: its length as a driver gets it, before it is optimised.
@@ -155,50 +266,44 @@ fn count_instructions(words: &[u32]) -> usize {
     count
 }
 
-/// One program in another language.
-fn translate(language: Language, program: &'static Shader) -> Result<Vec<u8>, TranslateError> {
-    let fail = |reason: String| TranslateError { program: program.name, language, reason };
-    let source = crate::compose(&crate::query_files(program.name.trim_start_matches(QUERY)));
-    let module = naga::front::wgsl::parse_str(&source).map_err(|e| fail(e.emit_to_string(&source)))?;
-    let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
-        .validate(&module)
-        .map_err(|e| fail(e.emit_to_string(&source)))?;
-    let text = match language {
-        Language::Wgsl => source,
-        Language::Hlsl => to_hlsl(&module, &info).map_err(fail)?,
-        Language::Glsl => to_glsl(&module, &info).map_err(fail)?,
-        Language::Msl => to_msl(&module, &info).map_err(fail)?,
-        Language::Spirv => return to_spirv(&module, &info).map_err(fail),
-    };
-    Ok(with_header(language, program, &text).into_bytes())
-}
-
-/// The text behind a comment that says what it is made from: the first paragraph of every file of the library.
-fn with_header(language: Language, program: &Shader, text: &str) -> String {
-    let mut header = format!(
-        "// {}.wgsl of glint-bake {}, translated by naga. Entry point main; what it is made of:\n",
-        program.name,
-        env!("CARGO_PKG_VERSION")
-    );
-    for part in parts(&[program.name]) {
-        header.push_str(&format!("//\n// {}.wgsl\n", part.name));
-        let paragraph = part.source.lines().take_while(|line| line.starts_with("// "));
-        paragraph.for_each(|line| header.push_str(&format!("{line}\n")));
-    }
-    // GLSL begins with its version.
-    match (language, text.split_once('\n')) {
-        (Language::Glsl, Some((version, rest))) => format!("{version}\n{header}\n{rest}"),
-        _ => format!("{header}\n{text}"),
-    }
-}
-
 fn to_hlsl(module: &naga::Module, info: &ModuleInfo) -> Result<String, String> {
     // Group and binding become space and register.
     let options = hlsl::Options { force_loop_bounding: false, ..hlsl::Options::default() };
     let pipeline = hlsl::PipelineOptions::default();
     let mut text = String::new();
     hlsl::Writer::new(&mut text, &options, &pipeline).write(module, info, None).map_err(|e| e.to_string())?;
-    Ok(text)
+    Ok(plain_hlsl(module, &text))
+}
+
+/// HLSL as an engine has it: samplers by registers where naga takes them from a heap, and arrays of zeros by their elements, since not every
+/// compiler casts a number to an array.
+fn plain_hlsl(module: &naga::Module, text: &str) -> String {
+    let mut samplers = BTreeMap::new();
+    for (binding, slot, _) in slots(module).into_values() {
+        let variable = module.global_variables.iter().find(|(_, variable)| variable.binding == Some(binding));
+        if slot == Slot::Sampler
+            && let Some(name) = variable.and_then(|(_, variable)| variable.name.clone())
+        {
+            samplers.insert(name, binding);
+        }
+    }
+    let line = |line: &str| -> Option<String> {
+        if line.contains("SamplerHeap[2048]") || line.starts_with("StructuredBuffer<uint> nagaGroup") {
+            return None;
+        }
+        if let Some(name) = line.strip_prefix("static const SamplerState ").and_then(|rest| rest.split(' ').next()) {
+            let binding = samplers[name];
+            return Some(format!("SamplerState {name} : register(s{}, space{});", binding.binding, binding.group));
+        }
+        if let Some((before, cast)) = line.split_once(" = (")
+            && let Some((ty, count)) = cast.strip_suffix("])0;").and_then(|cast| cast.split_once('['))
+            && let Ok(count) = count.parse()
+        {
+            return Some(format!("{before} = {{ {} }};", vec![format!("({ty})0"); count].join(", ")));
+        }
+        Some(line.to_owned())
+    };
+    text.lines().filter_map(line).flat_map(|line| [line, "\n".to_owned()]).collect()
 }
 
 /// What numbers are counted apart.
@@ -246,7 +351,34 @@ fn to_glsl(module: &naga::Module, info: &ModuleInfo) -> Result<String, String> {
     glsl::Writer::new(&mut text, module, info, &options, &pipeline, Default::default())
         .and_then(|mut writer| writer.write())
         .map_err(|e| e.to_string())?;
-    Ok(text)
+    Ok(plain_glsl(module, &text))
+}
+
+/// GLSL whose resources are called as in WGSL; what its extensions add is in version 4.50.
+fn plain_glsl(module: &naga::Module, text: &str) -> String {
+    let mut names = BTreeMap::new();
+    for (_, variable) in module.global_variables.iter() {
+        if let (Some(binding), Some(name)) = (variable.binding, variable.name.clone()) {
+            names.insert(format!("_group_{}_binding_{}_cs", binding.group, binding.binding), name);
+        }
+    }
+    let mut out = String::new();
+    for line in text.lines().filter(|line| !line.starts_with("#version") && !line.starts_with("#extension")) {
+        let mut bound = None;
+        let renamed = replace_words(line, |word| {
+            let name = names.get(word).cloned();
+            bound = name.clone().or(bound.take());
+            name
+        });
+        // A block has the name of what it holds.
+        let is_block = |word: &str| line.starts_with("layout(") && word.contains("_block_");
+        let renamed = replace_words(&renamed, |word| {
+            bound.as_ref().filter(|_| is_block(word)).map(|name| format!("{name}_block"))
+        });
+        out.push_str(&renamed);
+        out.push('\n');
+    }
+    out
 }
 
 fn to_msl(module: &naga::Module, info: &ModuleInfo) -> Result<String, String> {
@@ -276,7 +408,23 @@ fn to_msl(module: &naga::Module, info: &ModuleInfo) -> Result<String, String> {
     };
     let (text, _) =
         msl::write_string(module, info, &options, &msl::PipelineOptions::default()).map_err(|e| e.to_string())?;
-    Ok(text)
+    Ok(plain_msl(&text))
+}
+
+/// Metal's text in which types of arrays are called by what they are, so that they are the same in every program, and functions do not hand
+/// on lengths of arrays that none but the example asks for.
+fn plain_msl(text: &str) -> String {
+    let mut names: BTreeMap<String, String> = BTreeMap::new();
+    for item in items(text).iter().filter(|item| item.name.starts_with("type_")) {
+        let own =
+            item.words().filter(|word| !["struct", "typedef", "metal", "inner", item.name.as_str()].contains(word));
+        let words: Vec<&str> = own.map(|word| names.get(word).map_or(word, |name| name)).collect();
+        let kind = if item.text.starts_with("typedef") { "list" } else { "array" };
+        let name = format!("glint_{kind}_{}", words.join("_"));
+        names.insert(item.name.clone(), name);
+    }
+    let text = replace_words(text, |word| names.get(word).cloned()).replace(", _buffer_sizes)", ")");
+    text.replace(",\n    constant _mslBufferSizes& _buffer_sizes\n", "\n")
 }
 
 fn to_spirv(module: &naga::Module, info: &ModuleInfo) -> Result<Vec<u8>, String> {

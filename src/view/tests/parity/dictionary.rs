@@ -3,8 +3,9 @@
 use crate::support::{QUERIES, compare, gpu, log_uniform, random};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
-use glint_bake_core::dictionary::eval::{DictionaryMaterial, PixelOnSurface, patch_sdf};
+use glint_bake_core::dictionary::eval::{DictionaryMaterial, patch_sdf};
 use glint_bake_core::dictionary::{DictionaryOptions, bake, quality, sections};
+use glint_bake_core::footprint::PixelOnSurface;
 use glint_bake_core::progress::Silent;
 use glint_formats::Codec;
 use glint_formats::dictionary::DictionaryUniform;
