@@ -2,6 +2,7 @@
 
 mod arbitrary;
 mod bytes;
+mod c_header;
 mod corpus_container;
 mod corpus_typed;
 mod corrupt_corpus;

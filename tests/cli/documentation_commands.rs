@@ -1,7 +1,8 @@
 //! What the pages of the repository tell a user to type is typed here, and what they say a program prints is what it prints.
 //!
 //! Every command in a fenced `sh` or `console` block is run by a shell, in the order of its page, in a folder that holds
-//! `fixtures/maps` and `docs/examples` as the repository does; `console` blocks are compared with what came out as well.
+//! `fixtures/maps`, `fixtures/packs/v1`, `formats/c` and `docs/examples` as the repository does; `console` blocks are compared with
+//! what came out as well.
 //! `GLINT_BLESS=1 cargo test --all-features --test cli documentation_commands` writes those blocks anew.
 //!
 //! `cargo run --release … --bin X --` runs the X that was built for the tests. What cannot run is in [`NOT_RUN`], with a reason.
@@ -148,7 +149,7 @@ fn folder(page: &Path) -> tempfile::TempDir {
     let folder = if page == Path::new("docs/CLI.md") { inputs() } else { tempfile::tempdir().unwrap() };
     let model = crate::gltf_file::quad(r#"[{"normalTexture": {"index": 0}}]"#);
     fs::write(folder.path().join("model.glb"), model).unwrap();
-    for part in ["fixtures/maps", "docs/examples"] {
+    for part in ["fixtures/maps", "fixtures/packs/v1", "formats/c", "docs/examples"] {
         fs::create_dir_all(folder.path().join(part)).unwrap();
         for entry in fs::read_dir(root().join(part)).unwrap() {
             let path = entry.unwrap().path();
