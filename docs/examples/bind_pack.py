@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Binds a slope dictionary as a GPU reads it and asks it: python3 bind_pack.py PACK SHADERS QUERIES ANSWERS
+"""Binds a slope dictionary as a GPU reads it and asks it: python3 bind_pack.py PACK SHADERS PIXELS ANSWERS
 
 A host written from docs/FORMAT.md alone, on the package `wgpu` of PyPI, with read_pack.py beside it. It binds the sections of
-the table "Bindings" of a dictionary byte for byte, converts nothing, and runs the program that
-`glint-bake shaders --lang wgsl --method dictionary -o SHADERS` writes. QUERIES holds records of `DictionaryQuery` of
-SHADERS/query_dictionary.wgsl, ANSWERS gets as many of `DictionaryAnswer` (16 bytes: red, green, blue, coverage).
+the table "Bindings" of a dictionary byte for byte, converts nothing, and runs the example that
+`glint-bake shaders --lang wgsl --method dictionary -o SHADERS` writes. PIXELS holds records of `ExamplePixel` of
+SHADERS/example_pixels.wgsl, such as `--vectors` writes, ANSWERS gets as many of `ExampleAnswer`.
 """
 import pathlib
 import sys
@@ -13,7 +13,7 @@ import wgpu
 
 from read_pack import read
 
-QUERY_BYTES, ANSWER_BYTES, GROUP = 96, 16, 64
+PIXEL_BYTES, ANSWER_BYTES, GROUP = 80, 48, 64
 
 
 def section(path, kind):
@@ -26,18 +26,19 @@ def section(path, kind):
         return file.read(found["stored_len"])
 
 
-def answers(pack, shaders, queries):
+def answers(pack, shaders, pixels):
     adapter = wgpu.gpu.request_adapter_sync(power_preference="high-performance")
     device = adapter.request_device_sync()
     usage = wgpu.BufferUsage
 
     # The program: its files one after the other, in any order.
-    source = "\n".join(file.read_text() for file in sorted(pathlib.Path(shaders).rglob("*.wgsl")))
+    files = [f for kind in ["glint", "bind", "example"] for f in sorted(pathlib.Path(shaders).glob(f"{kind}_*.wgsl"))]
+    source = "\n".join(file.read_text() for file in files)
     pipeline = device.create_compute_pipeline(
         layout="auto", compute=dict(module=device.create_shader_module(code=source), entry_point="main"))
 
-    count = len(queries) // QUERY_BYTES
-    asked = device.create_buffer_with_data(data=queries, usage=usage.STORAGE)
+    count = len(pixels) // PIXEL_BYTES
+    asked = device.create_buffer_with_data(data=pixels, usage=usage.STORAGE)
     answered = device.create_buffer(size=count * ANSWER_BYTES, usage=usage.STORAGE | usage.COPY_SRC)
 
     # Group 1: SDUB and SDTB as they are, then the colours of the material, here white.
@@ -65,6 +66,6 @@ def answers(pack, shaders, queries):
 
 
 if __name__ == "__main__":
-    pack_path, shaders_path, queries_path, answers_path = sys.argv[1:]
+    pack_path, shaders_path, pixels_path, answers_path = sys.argv[1:]
     with open(answers_path, "wb") as out:
-        out.write(answers(pack_path, shaders_path, pathlib.Path(queries_path).read_bytes()))
+        out.write(answers(pack_path, shaders_path, pathlib.Path(pixels_path).read_bytes()))

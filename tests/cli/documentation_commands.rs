@@ -38,6 +38,7 @@ fn pages() -> Vec<PathBuf> {
         "README.md",
         "CONTRIBUTING.md",
         "docs/CLI.md",
+        "docs/ENGINES.md",
         "docs/FORMAT.md",
         "docs/INPUTS.md",
         "docs/PIPELINES.md",

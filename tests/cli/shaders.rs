@@ -25,10 +25,10 @@ fn every_language_is_written_and_listed() {
     let folder = tempfile::tempdir().unwrap();
     for (lang, file) in [
         ("wgsl", "area_light/eval.wgsl"),
-        ("hlsl", "query_area_light.hlsl"),
-        ("glsl", "query_area_light.comp"),
-        ("msl", "query_area_light.metal"),
-        ("spirv", "query_area_light.spv"),
+        ("hlsl", "glint_area_light.hlsl"),
+        ("glsl", "glint_area_light.glsl"),
+        ("msl", "glint_area_light.metal"),
+        ("spirv", "example_area_light.spv"),
     ] {
         let args = ["shaders", "--lang", lang, "--output", lang, "--json"];
         let printed = json(&bake(folder.path(), &args).ok().stdout);
@@ -41,6 +41,8 @@ fn every_language_is_written_and_listed() {
             let bytes = &files[entry["file"].as_str().unwrap()];
             assert_eq!(entry["bytes"].as_u64().unwrap(), bytes.len() as u64);
         }
+        let interface = json(std::str::from_utf8(&files["glint_area_light.json"]).unwrap());
+        check_against("glint-interface.schema.json", &interface, lang);
         let again = bake(folder.path(), &args[..5]).ok();
         assert!(again.stdout.is_empty() && again.stderr.contains("unchanged"), "{}", again.stderr);
         assert!(!again.stderr.contains(": written"), "{}", again.stderr);
@@ -55,10 +57,13 @@ fn methods_can_be_chosen_and_a_dry_run_writes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let args = ["shaders", "--lang", "glsl", "-o", "out", "--method", "dictionary"];
     let dry = bake(folder.path(), &[&args[..], &["-n"]].concat()).ok();
-    assert!(dry.stderr.contains("would write") && dry.stderr.contains("query_dictionary.comp"), "{}", dry.stderr);
+    assert!(dry.stderr.contains("would write") && dry.stderr.contains("glint_dictionary.glsl"), "{}", dry.stderr);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     bake(folder.path(), &args).ok();
-    assert_eq!(contents(&folder.path().join("out")).into_keys().collect::<Vec<_>>(), ["query_dictionary.comp"]);
+    assert_eq!(
+        contents(&folder.path().join("out")).into_keys().collect::<Vec<_>>(),
+        ["example_dictionary.comp", "glint_dictionary.glsl", "glint_dictionary.json"]
+    );
 }
 
 #[test]
@@ -67,7 +72,7 @@ fn what_cannot_be_written_is_refused() {
     fs::write(folder.path().join("file"), b"x").unwrap();
     assert_eq!(bake(folder.path(), &["shaders", "--lang", "wgsl", "-o", "file"]).code, 3);
     assert_eq!(bake(folder.path(), &["shaders", "--lang", "wgsl", "-o", "file", "--dry-run"]).code, 3);
-    fs::create_dir_all(folder.path().join("taken/query_dictionary.spv")).unwrap();
+    fs::create_dir_all(folder.path().join("taken/example_dictionary.spv")).unwrap();
     let refused = bake(folder.path(), &["shaders", "--lang", "spirv", "-o", "taken"]);
     assert_eq!(refused.code, 3, "{}", refused.stderr);
     assert_eq!(fs::read_dir(folder.path().join("taken")).unwrap().count(), 1);
@@ -75,4 +80,19 @@ fn what_cannot_be_written_is_refused() {
     assert!(unknown.code == 2 && unknown.stderr.contains("area_light"), "{}", unknown.stderr);
     assert_eq!(bake(folder.path(), &["shaders", "--lang", "cg", "-o", "out"]).code, 2);
     assert!(!folder.path().join("out").exists());
+}
+
+#[test]
+fn vectors_are_the_same_twice_and_stand_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let args = ["shaders", "--vectors", "--method", "glints", "--method", "lobes", "-o", "vectors", "--json"];
+    let printed = json(&bake(folder.path(), &args).ok().stdout);
+    check_against("glint-shaders.schema.json", &printed, "vectors");
+    assert_eq!(printed["files"].as_array().unwrap().len(), 8);
+    assert!(printed["language"].is_null());
+    let vectors = json(&fs::read_to_string(folder.path().join("vectors/vectors_glints.json")).unwrap());
+    check_against("glint-vectors.schema.json", &vectors, "glints");
+    let again = bake(folder.path(), &args[..8]).ok();
+    assert!(!again.stderr.contains(": written"), "{}", again.stderr);
+    assert_eq!(bake(folder.path(), &["shaders", "-o", "none"]).code, 2);
 }

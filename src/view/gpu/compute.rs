@@ -16,8 +16,18 @@ pub fn answer<Q: Pod, A: Pod>(
     data: &[&Resources],
     queries: &[Q],
 ) -> Result<Vec<A>, GpuError> {
+    answer_by(gpu, label, &gpu.shader(label, source)?, data, queries)
+}
+
+/// The same by a shader module that is made already.
+pub fn answer_by<Q: Pod, A: Pod>(
+    gpu: &Gpu,
+    label: &str,
+    module: &wgpu::ShaderModule,
+    data: &[&Resources],
+    queries: &[Q],
+) -> Result<Vec<A>, GpuError> {
     assert!(!queries.is_empty() && queries.len() <= MOST, "1 to {MOST} queries");
-    let module = gpu.shader(label, source)?;
     let device = &gpu.device;
     let storage = |binding, read_only| wgpu::BindGroupLayoutEntry {
         binding,
@@ -43,7 +53,7 @@ pub fn answer<Q: Pod, A: Pod>(
                 bind_group_layouts: &layouts,
                 immediate_size: 0,
             })),
-            module: &module,
+            module,
             entry_point: Some("main"),
             compilation_options: Default::default(),
             cache: None,

@@ -88,6 +88,12 @@ impl Gpu {
             ..Default::default()
         }))
         .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
+        Ok(Gpu::of_host(instance, adapter, device, queue))
+    }
+
+    /// The device that a host has made itself, whose loss and errors are recorded from here on.
+    pub fn of_host(instance: wgpu::Instance, adapter: wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Gpu {
+        let info = adapter.get_info();
         let lost = Arc::new(Mutex::new(None));
         let record = Arc::clone(&lost);
         device.set_device_lost_callback(move |reason, message| {
@@ -105,7 +111,7 @@ impl Gpu {
                 });
             }
         }));
-        Ok(Gpu { instance, adapter, info, device, queue, lost })
+        Gpu { instance, adapter, info, device, queue, lost }
     }
 
     /// A buffer with these bytes, a multiple of four. On a lost device it is unusable, but no panic.

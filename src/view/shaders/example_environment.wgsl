@@ -6,13 +6,11 @@
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if id.x >= arrayLength(&example_pixels) {
-        return;
-    }
     let asked = example_pixels[id.x];
     let pixel = example_pixel(asked);
     var answer = ExampleAnswer();
-    let material = glint_environment_defaults();
+    var material = glint_environment_defaults();
+    material.f0 = vec3f(0.9);
     let normal = vec3f(0.0, 0.0, 1.0);
     answer.radiance = glint_environment_eval(pixel, normal, asked.view, material);
     answer.brdf = glint_environment_mean(normal, asked.view, material);

@@ -6,9 +6,6 @@
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if id.x >= arrayLength(&example_pixels) {
-        return;
-    }
     let asked = example_pixels[id.x];
     let pixel = example_pixel(asked);
     var answer = ExampleAnswer();

@@ -1,4 +1,4 @@
-// Pixels that an example shades, one an invocation: group 0.
+// Pixels that an example shades, one an invocation, a multiple of 64 of them: group 0.
 
 #import footprint
 

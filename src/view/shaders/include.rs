@@ -66,6 +66,8 @@ impl<'a> Source<'a> {
 struct Writer<'a> {
     source: &'a Source<'a>,
     items: &'a [Item],
+    /// naga's helpers by name; some have several functions of one name.
+    helpers: &'a BTreeMap<&'a str, Vec<&'a Item>>,
     /// Helpers and prototypes that are written.
     written: BTreeSet<String>,
     text: String,
@@ -82,15 +84,12 @@ impl Writer<'_> {
 
     /// The helpers of naga that `item` calls, each before the first that calls it and under a guard of its own.
     fn helpers_of(&mut self, item: &Item) {
-        let items = self.items;
-        for word in item.words() {
-            for helper in items.iter().filter(|other| other.name == word && self.source.origin(other) == Origin::Helper)
-            {
-                let signature = helper_guard(helper);
-                if self.written.insert(signature.clone()) {
-                    self.helpers_of(helper);
-                    self.text.push_str(&format!("#ifndef {signature}\n#define {signature}\n{}#endif\n", helper.text));
-                }
+        let helpers = self.helpers;
+        for helper in item.words().filter_map(|word| helpers.get(word)).flatten() {
+            let signature = helper_guard(helper);
+            if self.written.insert(signature.clone()) {
+                self.helpers_of(helper);
+                self.text.push_str(&format!("#ifndef {signature}\n#define {signature}\n{}#endif\n", helper.text));
             }
         }
     }
@@ -222,14 +221,19 @@ pub fn own_bindings(method: &str) -> String {
 pub fn arrange(method: &str, files: &[&'static Shader], called: &[&str], translated: &str, before: &str) -> Parts {
     let source = Source::of(files, called);
     let items = items(&with_their_names(files, translated));
-    let mut library = Writer { source: &source, items: &items, written: BTreeSet::new(), text: before.to_owned() };
+    let mut helpers: BTreeMap<&str, Vec<&Item>> = BTreeMap::new();
+    for item in items.iter().filter(|item| source.origin(item) == Origin::Helper) {
+        helpers.entry(&item.name).or_default().push(item);
+    }
+    let (source, items, helpers) = (&source, &items[..], &helpers);
+    let mut library = Writer { source, items, helpers, written: BTreeSet::new(), text: before.to_owned() };
     for index in 0..files.len() {
         library.file(index);
     }
     library.bindings(&own_bindings(method));
 
     let Writer { written, text, .. } = library;
-    let mut example = Writer { source: &source, items: &items, written, text: String::new() };
+    let mut example = Writer { source, items, helpers, written, text: String::new() };
     for item in items.iter().filter(|item| source.origin(item) == Origin::Example) {
         // Those for the preprocessor are the caller's.
         if !item.text.starts_with('#') && !item.text.starts_with("using ") {

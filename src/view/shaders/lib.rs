@@ -13,7 +13,9 @@
 //! A file names those that it calls in lines `#import <method>::<file>`.
 //! Order of declarations does not matter in WGSL, so a program is its files one after the other ([`compose`]).
 
+mod backends;
 mod declared;
+pub mod describe;
 mod include;
 mod items;
 pub mod layout;

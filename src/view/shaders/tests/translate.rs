@@ -7,11 +7,21 @@ use naga::valid::{ValidationFlags, Validator};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
+use std::sync::OnceLock;
 
-fn all(language: Language) -> Vec<ShaderFile> {
-    let found = files(language, &methods()).unwrap();
-    assert_eq!(found, files(language, &methods()).unwrap(), "{language:?} is not the same twice");
-    found
+/// The files of every method.
+fn all(language: Language) -> &'static [ShaderFile] {
+    static ALL: [OnceLock<Vec<ShaderFile>>; 5] = [const { OnceLock::new() }; 5];
+    let place = Language::ALL.iter().position(|other| *other == language).unwrap();
+    ALL[place].get_or_init(|| files(language, &methods()).unwrap())
+}
+
+#[test]
+fn files_are_the_same_twice() {
+    for language in Language::ALL {
+        let of_method = |method: &str| files(language, &[method]).unwrap();
+        assert_eq!(of_method("glints"), of_method("glints"), "{language:?}");
+    }
 }
 
 fn text(file: &ShaderFile) -> &str {
@@ -50,7 +60,9 @@ fn includes(extension: &str) -> String {
     methods().iter().map(|method| format!("#include \"glint_{method}.{extension}\"\n")).collect()
 }
 
-const GLSL: (&str, &[&str]) = ("glslangValidator", &["-G", "-I.", "-o", "/dev/null"]);
+/// For OpenGL and for Vulkan.
+const GLSL: [(&str, &[&str]); 2] =
+    [("glslangValidator", &["-G", "-I.", "-o", "/dev/null"]), ("glslangValidator", &["-V", "-I.", "-o", "/dev/null"])];
 const HLSL: (&str, &[&str]) = ("glslangValidator", &["-D", "-S", "comp", "-e", "main", "-V", "-I.", "-o", "/dev/null"]);
 
 /// Functions that engines call: those of `include_<method>.wgsl`.
@@ -177,31 +189,33 @@ fn wgsl_is_valid() {
 fn glsl_compiles() {
     let found = all(Language::Glsl);
     let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), &found);
-    for name in beginning(&found, "glint_") {
+    write(folder.path(), found);
+    for name in beginning(found, "glint_") {
         let file = text(found.iter().find(|file| file.name == name).unwrap());
         assert!(!file.contains("void main") && !file.contains("#version"), "{name} is a program");
     }
-    let examples = beginning(&found, "example_");
-    accepted_by(GLSL.0, GLSL.1, folder.path(), &examples);
+    let examples = beginning(found, "example_");
+    for (program, args) in GLSL {
+        accepted_by(program, args, folder.path(), &examples);
+    }
     let together = format!(
         "#version 450\n#extension GL_GOOGLE_include_directive : require\n{}layout(local_size_x = 1) in;\nvoid main() {{}}\n",
         includes("glsl")
     );
     std::fs::write(folder.path().join("together.comp"), together).unwrap();
-    accepted_by(GLSL.0, GLSL.1, folder.path(), &["together.comp"]);
+    accepted_by(GLSL[0].0, GLSL[0].1, folder.path(), &["together.comp"]);
 }
 
 #[test]
 fn hlsl_compiles() {
     let found = all(Language::Hlsl);
     let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), &found);
-    for name in beginning(&found, "glint_") {
+    write(folder.path(), found);
+    for name in beginning(found, "glint_") {
         let file = text(found.iter().find(|file| file.name == name).unwrap());
         assert!(!file.contains("void main") && !file.contains("nagaSamplerHeap"), "{name}");
     }
-    accepted_by(HLSL.0, HLSL.1, folder.path(), &beginning(&found, "example_"));
+    accepted_by(HLSL.0, HLSL.1, folder.path(), &beginning(found, "example_"));
     let together = format!("{}[numthreads(1, 1, 1)]\nvoid main() {{}}\n", includes("hlsl"));
     std::fs::write(folder.path().join("together.hlsl"), together).unwrap();
     accepted_by(HLSL.0, HLSL.1, folder.path(), &["together.hlsl"]);
@@ -229,12 +243,29 @@ fn bindings_can_be_replaced() {
     assert!(!before.contains("register(") && bindings.matches("register(").count() == 3, "{bindings}");
 }
 
+/// The shader of docs/ENGINES.md is what it says, in a pixel's program.
+#[test]
+fn the_shader_of_the_page_compiles() {
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../docs/ENGINES.md")).unwrap();
+    let block = page.split("```hlsl\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), all(Language::Hlsl));
+    let main = "float4 main(float2 uv : TEXCOORD0) : SV_Target\n{\n    float3 up = float3(0.0, 0.0, 1.0);\n    \
+        return float4(shade_sun(uv, up, up, up), 1.0);\n}\n";
+    std::fs::write(folder.path().join("page.hlsl"), format!("{block}{main}")).unwrap();
+    let args = ["-D", "-S", "frag", "-e", "main", "-V", "-I.", "-o", "/dev/null"];
+    accepted_by("glslangValidator", &args, folder.path(), &["page.hlsl"]);
+    for method in methods() {
+        assert!(page.contains(&format!("`{method}`")), "the page does not name {method}");
+    }
+}
+
 #[test]
 fn spirv_is_valid() {
     let found = all(Language::Spirv);
     let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), &found);
-    for file in &found {
+    write(folder.path(), found);
+    for file in found {
         assert_eq!(file.bytes[..4], 0x0723_0203u32.to_le_bytes(), "{}", file.name);
     }
     let names: Vec<&str> = found.iter().map(|file| file.name.as_str()).collect();
@@ -267,7 +298,7 @@ fn functions_keep_their_names_and_comments() {
 #[test]
 fn metal_has_no_entry_point_but_in_examples() {
     for file in all(Language::Msl) {
-        let text = text(&file);
+        let text = text(file);
         let is_example = file.name.starts_with("example_");
         assert_eq!(text.matches("kernel void main_(").count(), usize::from(is_example), "{}", file.name);
         assert_eq!(text.matches('{').count(), text.matches('}').count(), "{}", file.name);

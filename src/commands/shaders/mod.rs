@@ -1,4 +1,8 @@
-//! `glint-bake shaders`: the run time of the methods in an engine's shading language.
+//! `glint-bake shaders`: the run time of the methods in an engine's shading language, and vectors that prove a port of it.
+
+mod cases;
+mod pixel;
+mod vectors;
 
 use crate::cli::Terminal;
 use crate::exit::{Exit, Failure};
@@ -7,6 +11,7 @@ use clap::ValueEnum;
 use clap::builder::PossibleValuesParser;
 use glint_formats::WriteOutcome;
 use glint_formats::provenance::InputDigest;
+use glint_shaders::describe;
 use glint_shaders::translate::{self, ShaderFile};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -15,7 +20,8 @@ use std::path::{Path, PathBuf};
 const EXAMPLES: &str = "\
 Examples:
   glint-bake shaders --lang wgsl -o shaders
-  glint-bake shaders --lang hlsl --method area_light -o shaders";
+  glint-bake shaders --lang hlsl --method area_light -o shaders
+  glint-bake shaders --vectors -o vectors";
 
 /// Where the schema of the JSON lives; its `$id`.
 const SCHEMA: &str =
@@ -29,8 +35,11 @@ const SCHEMA: &str =
 #[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Shading language
-    #[arg(long, value_name = "LANGUAGE")]
-    pub lang: Language,
+    #[arg(long, value_name = "LANGUAGE", required_unless_present = "vectors")]
+    pub lang: Option<Language>,
+    /// Write golden vectors: of each method a small pack, pixels and what the method gives for them, as JSON and raw
+    #[arg(long)]
+    pub vectors: bool,
     /// Folder to write into; it is created
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
@@ -73,13 +82,27 @@ impl Language {
     }
 }
 
+/// Where the schema of an interface lives; its `$id`.
+const INTERFACE_SCHEMA: &str =
+    "https://raw.githubusercontent.com/glint-bake/glint-bake/main/docs/schema/glint-interface.schema.json";
+
+/// The JSON of an interface.
+#[derive(Debug, Serialize)]
+struct Described {
+    #[serde(rename = "$schema")]
+    schema: &'static str,
+    tool_version: &'static str,
+    #[serde(flatten)]
+    interface: describe::Interface,
+}
+
 /// What `--json` prints.
 #[derive(Debug, Serialize)]
 struct List {
     #[serde(rename = "$schema")]
     schema: &'static str,
     tool_version: &'static str,
-    language: Language,
+    language: Option<Language>,
     files: Vec<FileInfo>,
 }
 
@@ -95,8 +118,17 @@ struct FileInfo {
 pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     let wanted = |method: &&str| args.method.is_empty() || args.method.iter().any(|name| name == method);
     let methods: Vec<&str> = translate::methods().into_iter().filter(wanted).collect();
-    let files = translate::files(args.lang.translated(), &methods)
-        .map_err(|e| Failure::new(Exit::Unexpected, format!("{e}; please report this")))?;
+    let mut files = Vec::new();
+    if let Some(language) = args.lang {
+        let translated = translate::files(language.translated(), &methods);
+        files = translated.map_err(|e| Failure::new(Exit::Unexpected, format!("{e}; please report this")))?;
+        files.extend(methods.iter().map(|method| interface(method)));
+    }
+    if args.vectors {
+        for method in methods {
+            files.extend(vectors::files(method)?);
+        }
+    }
     let paths: Vec<PathBuf> = files.iter().map(|file| args.output.join(&file.name)).collect();
     if args.dry_run {
         let there = paths.iter().filter(|path| path.parent().is_some_and(Path::exists));
@@ -124,8 +156,20 @@ pub fn run(args: &Args, terminal: Terminal) -> Result<(), Failure> {
     Ok(())
 }
 
+/// What a method's files say of themselves, `glint_<method>.json`.
+fn interface(method: &str) -> ShaderFile {
+    let described = Described {
+        schema: INTERFACE_SCHEMA,
+        tool_version: env!("CARGO_PKG_VERSION"),
+        interface: describe::interface(method),
+    };
+    let mut text = serde_json::to_string_pretty(&described).expect("interfaces have string keys only");
+    text.push('\n');
+    ShaderFile { name: format!("glint_{method}.json"), bytes: text.into_bytes() }
+}
+
 /// The list as JSON, with a line end.
-fn list(language: Language, files: &[ShaderFile]) -> String {
+fn list(language: Option<Language>, files: &[ShaderFile]) -> String {
     let describe = |file: &ShaderFile| FileInfo {
         file: file.name.clone(),
         bytes: file.bytes.len() as u64,
