@@ -7,6 +7,7 @@
 //! are bounded, so no counters are added to them.
 
 use crate::backends::{GLSL_SLOTS, to_glsl, to_hlsl, to_msl, to_spirv};
+use crate::declared::{Kind, declared, head};
 use crate::include::{Parts, arrange};
 use crate::{CHOICES, module, modules, parts, text};
 use glint_bake_core::shaders::Shader;
@@ -180,18 +181,14 @@ fn written(language: Language, method: &str, variant: &Variant) -> Result<Vec<Sh
         Language::Msl => to_msl(&module, &info),
         Language::Wgsl => Ok(source),
     };
-    let head = header(method);
-    let (before, first) = match language {
-        Language::Msl => (
-            format!("{head}\n#pragma once\n#include <metal_stdlib>\n#include <simd/simd.h>\n\nusing metal::uint;\n"),
-            String::new(),
-        ),
-        Language::Glsl => (
-            format!("{head}\n{GLSL_SLOTS}"),
-            "#version 450\n#extension GL_GOOGLE_include_directive : require\n\n".to_owned(),
-        ),
-        _ => (format!("{head}\n"), String::new()),
+    let about = header(method);
+    let before = match language {
+        Language::Msl => format!("{about}\n{METAL_HEAD}{}", forward_declarations(&files)),
+        Language::Glsl => format!("{about}\n{GLSL_SLOTS}"),
+        _ => format!("{about}\n"),
     };
+    // An example is a program, a library is not.
+    let first = if language == Language::Glsl { GLSL_HEAD } else { "" };
     let Parts { library, example: calls } =
         arrange(method, &files, &variant.called(method), &translated.map_err(fail)?, &before);
     let about = format!("// An example of how {name} is called: a compute program.\n\n#include \"{name}\"\n");
@@ -201,11 +198,22 @@ fn written(language: Language, method: &str, variant: &Variant) -> Result<Vec<Sh
     ])
 }
 
+/// What examples in GLSL begin with.
+const GLSL_HEAD: &str = "#version 450\n#extension GL_GOOGLE_include_directive : require\n\n";
+
+/// What files in Metal's language begin with.
+const METAL_HEAD: &str = "#pragma once\n#include <metal_stdlib>\n#include <simd/simd.h>\n\nusing metal::uint;\n";
+
+/// Structs of the bindings, which functions of Metal hand on before they are defined.
+fn forward_declarations(files: &[&'static Shader]) -> String {
+    let bound = files.iter().filter(|file| file.name.starts_with("bind_")).flat_map(|file| declared(file));
+    bound.filter(|one| one.kind == Kind::Struct).map(|one| format!("struct {};\n", one.name)).collect()
+}
+
 /// What every file begins with.
 fn header(method: &str) -> String {
-    let about = crate::declared::head(
-        module(&format!("include_{method}")).unwrap_or_else(|| panic!("there is no include_{method}.wgsl")),
-    );
+    let include = format!("include_{method}");
+    let about = head(module(&include).unwrap_or_else(|| panic!("there is no {include}.wgsl")));
     let lines = [
         "SPDX-License-Identifier: MIT OR Apache-2.0".to_owned(),
         format!("Of glint-bake {}, written by glint-bake shaders.", env!("CARGO_PKG_VERSION")),

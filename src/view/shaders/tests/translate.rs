@@ -4,7 +4,7 @@
 use glint_shaders::translate::{CAPABILITIES, Language, ShaderFile, files, methods, variants};
 use glint_shaders::{CHOICES, modules};
 use naga::valid::{ValidationFlags, Validator};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::process::Command;
 use std::sync::OnceLock;
@@ -310,5 +310,29 @@ fn metal_has_no_entry_point_but_in_examples() {
         for slot in 0..textures {
             assert_eq!(text.matches(&format!("[[texture({slot})]]")).count(), 1, "{}: texture {slot}", file.name);
         }
+    }
+}
+
+/// Nothing compiles Metal's language here; at least every struct and function is declared before it is used.
+#[test]
+fn metal_declares_before_it_uses() {
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    for file in all(Language::Msl).iter().filter(|file| file.name.starts_with("glint_")) {
+        let (mut names, mut declared) = (BTreeSet::new(), BTreeSet::new());
+        let declares = |line: &str| !line.starts_with([' ', '#', '/', '}']);
+        for line in text(file).lines().filter(|line| declares(line)) {
+            names.extend(line.strip_prefix("struct ").and_then(|rest| rest.split(|c| !is_word(c)).next()));
+            names.extend(line.split_once('(').and_then(|(head, _)| head.rsplit(' ').next()));
+        }
+        for line in text(file).lines().filter(|line| !line.trim_start().starts_with("//") && !line.starts_with('#')) {
+            for word in line.split(|c| !is_word(c)).filter(|word| names.contains(word)) {
+                let is_own = line.starts_with(&format!("struct {word}")) || line.contains(&format!(" {word}("));
+                if declares(line) && is_own {
+                    declared.insert(word);
+                }
+                assert!(declared.contains(word), "{}: {word} is used before it is declared: {line}", file.name);
+            }
+        }
+        assert!(names.len() > 40, "{}: {}", file.name, names.len());
     }
 }
